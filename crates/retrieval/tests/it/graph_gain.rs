@@ -45,46 +45,32 @@ impl Set {
         self.classes.push(class.to_string());
     }
 
-    /// Gaussian classes of these sizes, `width` wide, whose centers have deviation 1.
-    fn gaussian(random: &mut Random, sizes: &[usize], dim: usize, width: f64) -> Self {
-        let mut set = Self::default();
-        for (class, size) in sizes.iter().enumerate() {
+    /// Gaussian parts of these sizes, `width` wide, around the centers of their groups, which have deviation 1. A class is a part,
+    /// or a group.
+    fn clusters(
+        random: &mut Random,
+        groups: &[Vec<usize>],
+        dim: usize,
+        [within, width]: [f64; 2],
+        parts_are_classes: bool,
+    ) -> Self {
+        let (mut set, mut part) = (Self::default(), 0);
+        for (group, sizes) in groups.iter().enumerate() {
             let center = random.point(dim);
-            (0..*size).for_each(|_| set.add(random.around(&center, width), class));
-        }
-        set
-    }
-
-    /// Classes along arcs of a circle.
-    fn chains(random: &mut Random, n_classes: usize, size: usize, noise: f64) -> Self {
-        const DIM: usize = 8;
-        let mut set = Self::default();
-        for class in 0..n_classes {
-            let (center, [a, b]) = (random.point(DIM), [0, 1].map(|_| random.point(DIM)));
-            for i in 0..size {
-                let (sin, cos) = (2.5 * i as f64 / size as f64).sin_cos();
-                let on = center.iter().zip(a.iter().zip(&b)).map(|(x, (a, b))| x + 0.4 * (cos * a + sin * b));
-                let on: Vec<f64> = on.collect();
-                set.add(random.around(&on, noise), class);
+            for size in sizes {
+                let center = random.around(&center, within);
+                let class = if parts_are_classes { part } else { group };
+                (0..*size).for_each(|_| set.add(random.around(&center, width), class));
+                part += 1;
             }
         }
         set
     }
 
-    /// Groups of groups; a label is a group, or one of its parts.
-    fn nested(random: &mut Random, width: f64, parts_are_classes: bool) -> Self {
-        const DIM: usize = 12;
-        let mut set = Self::default();
-        for group in 0..8 {
-            let center = random.point(DIM);
-            for part in 0..5 {
-                let within = random.around(&center, 0.35);
-                let size = [3, 5, 6, 10, 20][(group + part) % 5];
-                let class = if parts_are_classes { 5 * group + part } else { group };
-                (0..size).for_each(|_| set.add(random.around(&within, width), class));
-            }
-        }
-        set
+    /// Classes of these sizes.
+    fn classes(random: &mut Random, sizes: &[usize], dim: usize, width: f64) -> Self {
+        let groups: Vec<Vec<usize>> = sizes.iter().map(|size| vec![*size]).collect();
+        Self::clusters(random, &groups, dim, [0.0, width], true)
     }
 
     /// Points whose lengths vary: those near the origin are near to many.
@@ -123,7 +109,7 @@ fn sets(seed: u64) -> Vec<(String, Set)> {
         for size in [2, 3, 5, 10, 20, 40] {
             for width in widths {
                 let sizes = vec![size; (240 / size).max(8)];
-                let set = Set::gaussian(random, &sizes, dim, width);
+                let set = Set::classes(random, &sizes, dim, width);
                 sets.push((format!("classes of {size}, {dim} dimensions, width {width}"), set));
             }
         }
@@ -136,18 +122,19 @@ fn sets(seed: u64) -> Vec<(String, Set)> {
     let alone = [&[1; 150][..], &[3; 15], &[5; 10]].concat();
     for width in [0.3, 0.5, 0.7] {
         for (name, sizes) in [("mixed sizes", &mixed), ("one huge class", &huge), ("most alone", &alone)] {
-            sets.push((format!("{name}, width {width}"), Set::gaussian(random, sizes, 12, width)));
+            sets.push((format!("{name}, width {width}"), Set::classes(random, sizes, 12, width)));
         }
-        let hubs = Set::gaussian(random, &[6; 40], 32, width).with_hubs(random);
+        let hubs = Set::classes(random, &[6; 40], 32, width).with_hubs(random);
         sets.push((format!("hubs, width {width}"), hubs));
     }
-    for noise in [0.05, 0.15, 0.3] {
-        for (n_classes, size) in [(8, 20), (5, 60), (30, 5)] {
-            let set = Set::chains(random, n_classes, size, noise);
-            sets.push((format!("chains of {size}, noise {noise}"), set));
+    let parts = [3, 5, 6, 10, 20];
+    let groups: Vec<Vec<usize>> =
+        (0..8).map(|group| (0..5).map(|i| parts[(group + i) % 5]).collect()).collect();
+    for width in [0.05, 0.15, 0.3] {
+        for (name, parts_are_classes) in [("parts of groups", true), ("groups of parts", false)] {
+            let set = Set::clusters(random, &groups, 12, [0.35, width], parts_are_classes);
+            sets.push((format!("{name}, width {width}"), set));
         }
-        sets.push((format!("parts of groups, width {noise}"), Set::nested(random, noise, true)));
-        sets.push((format!("groups of parts, width {noise}"), Set::nested(random, noise, false)));
     }
     sets
 }
