@@ -35,7 +35,7 @@ fn written(value: f64, format: &str) -> String {
 }
 
 /// A number with commas between groups of three digits.
-fn grouped(digits: &str) -> String {
+pub(crate) fn grouped(digits: &str) -> String {
     let (whole, rest) = digits.split_at(digits.find(['.', 'e']).unwrap_or(digits.len()));
     let (sign, whole) = whole.split_at(usize::from(whole.starts_with('-')));
     let mut text = sign.to_owned();

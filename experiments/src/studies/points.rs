@@ -24,6 +24,7 @@ use crate::collection::LabeledSurface;
 use crate::context::Context;
 use crate::gallery::Gallery;
 use crate::sweep::{MeasuredNumbers, Panels, mean, note, plots, point};
+use crate::text::grouped;
 
 const COUNTS: [usize; 2] = [10_000, 50_000];
 
@@ -49,7 +50,7 @@ pub(crate) fn points(context: &Context<'_>) -> Result<Record> {
     let (mut measured, mut least, mut panels) = (MeasuredNumbers::new(), f64::INFINITY, Panels::default());
     for noise in NOISES {
         for n in COUNTS {
-            let name = format!("{} % of sqrt(area), {} points", 100.0 * noise, thousands(n));
+            let name = format!("{} % of sqrt(area), {} points", 100.0 * noise, grouped(&n.to_string()));
             let most = if n > COUNTS[0] { QUERIES_OF_MANY } else { usize::MAX };
             let found = gallery.map(context.options.queries.min(most), &name, |query| {
                 let cloud = ScannedCloud::new(query.shape, n, noise, query.seed)?;
@@ -63,7 +64,7 @@ pub(crate) fn points(context: &Context<'_>) -> Result<Record> {
             least = least.min(nn);
             for (title, value) in [("mean relative error", errors[0]), ("NN", nn)] {
                 let axes = ["noise, % of sqrt(area)", title].map(Axis::linear);
-                let name = format!("{} points", thousands(n));
+                let name = format!("{} points", grouped(&n.to_string()));
                 panels.add(title, axes, (&name, SeriesKind::Curve), point(100.0 * noise, &[value]));
             }
         }
@@ -143,9 +144,4 @@ struct Triple {
     noisy: ScannedPoint,
     smooth: ScannedPoint,
     vertex: VertexId,
-}
-
-/// `10,000`.
-fn thousands(n: usize) -> String {
-    format!("{},{:03}", n / 1000, n % 1000)
 }

@@ -8,7 +8,7 @@ use zip::ZipArchive;
 
 use super::ExportFormat;
 use crate::tests::{Folder, OPTIONS, exported, shape};
-use crate::{Index, Shape};
+use crate::{Entry, Index, Shape};
 
 /// An index in which one shape lacks a signature that another one has.
 fn uneven() -> (Folder, Index, Vec<Shape>) {
@@ -43,10 +43,9 @@ fn parquet_holds_everything() {
     let rows: Vec<Row> = reader.get_row_iter(None).unwrap().map(Result::unwrap).collect();
     assert_eq!(rows.len(), shapes.len());
     for (row, shape) in rows.iter().zip(&shapes) {
-        assert_eq!(row.get_string(0).unwrap(), &shape.entry.id);
-        assert_eq!(row.get_string(1).unwrap(), &shape.entry.label);
-        assert_eq!(row.get_string(2).unwrap(), &shape.entry.path);
-        assert_eq!(row.get_string(3).unwrap(), &shape.entry.content.to_string());
+        let Entry { id, label, path, content, .. } = &shape.entry;
+        let texts = [0, 1, 2, 3].map(|column| row.get_string(column).unwrap());
+        assert_eq!(texts, [id, label, path, &content.to_string()]);
         for (column, (name, field)) in row.get_column_iter().enumerate().skip(4) {
             if let Some(fact) = name.strip_prefix("fact_") {
                 let facts = shape.entry.facts.named();
