@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
-use canonform::mesh::io::{Content, Format, VertexField, extension, files_of, is_gzip, or_list};
+use canonform::mesh::io::{
+    Content, Format, VertexField, extension, files_of, is_gzip, or_list, without_extension,
+};
 use canonform::mesh::{MeshError, TriMesh};
 use report::color::{Rgb, color_scale};
 use serde::Serialize;
@@ -219,6 +221,13 @@ pub(crate) fn check_output(path: &Path) -> Result<()> {
         }
         _ => Ok(()),
     }
+}
+
+/// The path of a further file: `map-mirrored.npy` beside `map.npy`.
+pub(crate) fn beside(path: &Path, what: &str) -> PathBuf {
+    let mut name = without_extension(path).into_os_string();
+    name.push(format!("-{what}.{}", extension(path) + if is_gzip(path) { ".gz" } else { "" }));
+    name.into()
 }
 
 /// Writes a mesh colored by one value per vertex.

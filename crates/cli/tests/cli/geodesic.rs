@@ -63,8 +63,9 @@ fn the_nearest_of_several_sources_is_one_row() {
     assert_eq!(json["seconds"]["per_source"].as_array().unwrap().len(), 1);
     let (shape, near) = read_npy(&place.path("near.npy"));
     assert_eq!((shape, near[9], near[71]), (vec![1, 72], 0.0, 0.0));
-    assert_eq!(run("-o each.ply")["outputs"], json!(["each-9.ply", "each-f60@1_1_1.ply", "each-71.ply"]));
-    assert_eq!(io::read(&place.path("each-71.ply")).unwrap(), io::read(&place.path("sheet.off")).unwrap());
+    let outputs = run("-o each.ply.gz")["outputs"].take();
+    assert_eq!(outputs, json!(["each-9.ply.gz", "each-f60@1_1_1.ply.gz", "each-71.ply.gz"]));
+    assert_eq!(io::read(&place.path("each-71.ply.gz")).unwrap(), io::read(&place.path("sheet.off")).unwrap());
     // Beyond a limit distances are infinite and counted.
     let json = place.json("geodesic sheet.off --source 40,9 --max-distance 2.5 -o near.npy");
     let (_, near) = read_npy(&place.path("near.npy"));

@@ -1,15 +1,14 @@
 //! Distances from sources: one row, or one colored mesh, per source.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use base::object;
-use canonform::mesh::InputPoint;
 use canonform::surface::VertexId;
 
 use super::task::{Row, Task, milliseconds, spelled};
-use crate::output::{Answer, count, shown, write_colored};
+use crate::output::{Answer, beside, count, shown, write_colored};
 use crate::table::{write_csv, write_npy};
 
 /// Measures, writes and reports distances.
@@ -95,7 +94,9 @@ fn write_rows(task: &Task, solved: &[Row], rows: &[Vec<f64>]) -> Result<Vec<Path
         _ => {
             let is_one = rows.len() == 1;
             let write = |(row, distances): (&Row, &Vec<f64>)| {
-                let path = if is_one { output.to_owned() } else { numbered(output, &row.from, format) };
+                // Some systems do not allow colons in file names.
+                let source = spelled(&row.from).replace(':', "_");
+                let path = if is_one { output.to_owned() } else { beside(output, &source) };
                 write_colored(&path, task.mesh, "distance", distances)
                     .with_context(|| format!("source {}", spelled(&row.from)))?;
                 Ok(if is_one { task.output.name.clone() } else { path })
@@ -104,11 +105,4 @@ fn write_rows(task: &Task, solved: &[Row], rows: &[Vec<f64>]) -> Result<Vec<Path
         }
     }
     Ok(vec![task.output.name.clone()])
-}
-
-/// `out.ply` for source 7 of several: `out-7.ply`.
-fn numbered(output: &Path, from: &[InputPoint], extension: &str) -> PathBuf {
-    let stem = output.file_stem().unwrap_or_default().to_string_lossy();
-    // Some systems do not allow colons in file names.
-    output.with_file_name(format!("{stem}-{}.{extension}", spelled(from).replace(':', "_")))
 }

@@ -1,6 +1,6 @@
 //! Files of maps.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::Result;
 use base::object;
@@ -13,6 +13,7 @@ use report::color::{Rgb, mix, perceptual, place_colors};
 use report::render::{Coloring, RenderOptions, render};
 use serde::Serialize;
 
+use crate::output::beside;
 use crate::table::{write_matrix, write_npy};
 
 /// Below this confidence a vertex is counted as doubtful. In pictures, colors fade from half as much above it to gray at half of
@@ -23,13 +24,6 @@ pub(super) const DOUBTFUL: f64 = 0.5;
 pub(super) struct MappedFile {
     pub(super) mesh: TriMesh,
     pub(super) mapped: MappedSurface,
-}
-
-/// The path of a further file: `map-mirrored.npy` beside `map.npy`.
-pub(super) fn beside(path: &Path, what: &str) -> PathBuf {
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let extension = path.extension().unwrap_or_default().to_string_lossy();
-    path.with_file_name(format!("{stem}-{what}.{extension}"))
 }
 
 /// The number of a partner.

@@ -14,12 +14,12 @@ use canonform::mesh::io::{VertexField, write_scalar_field};
 use canonform::settings::MethodSettings;
 use serde::Serialize;
 
-use super::files::{DOUBTFUL, MappedFile, beside, corresponding, picture, write_functional, write_table};
+use super::files::{DOUBTFUL, MappedFile, corresponding, picture, write_functional, write_table};
 use super::known;
 use super::transfer::read_transfer;
 use crate::args::{Common, MAP_FORMATS, MatchArgs, VALUE_FORMATS};
 use crate::input::{named, read_pair};
-use crate::output::{Fact, check_format, check_output, facts, report};
+use crate::output::{Fact, beside, check_format, check_output, facts, report};
 
 #[derive(Serialize)]
 struct MapJson {
@@ -42,23 +42,15 @@ struct MapJson {
 /// Maps the vertices of one mesh to those of another.
 pub(crate) fn match_meshes(args: &MatchArgs, common: &Common) -> Result<ExitCode> {
     let mut options = args.maps.options(args.form.options(&MethodSettings::default(), common)?);
-    let format = match &args.output {
-        Some(path) => {
-            for path in [
-                path.clone(),
-                beside(path, "source"),
-                beside(path, "alternative"),
-                path.with_extension("png"),
-            ] {
-                check_output(&path)?;
-            }
-            Some(match args.transfer {
-                Some(_) => check_format(path, "values", &VALUE_FORMATS)?,
-                None => check_format(path, "a map", &MAP_FORMATS)?,
-            })
+    let checked = |path: &PathBuf| {
+        let others = [beside(path, "source"), beside(path, "alternative"), path.with_extension("png")];
+        others.iter().chain([path]).try_for_each(|path| check_output(path))?;
+        match args.transfer {
+            Some(_) => check_format(path, "values", &VALUE_FORMATS),
+            None => check_format(path, "a map", &MAP_FORMATS),
         }
-        None => None,
     };
+    let format = args.output.as_ref().map(checked).transpose()?;
     if let Some(path) = &args.functional {
         check_output(path)?;
         check_format(path, "a functional map", &["npy"])?;
