@@ -42,12 +42,12 @@ pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
             for shortcut in &mut shortcuts {
                 shortcut.vertex = repaired.remap.to_old(shortcut.vertex);
             }
-            let mesh = if mesh.faces.is_empty() { &repaired.mesh } else { &mesh };
-            Ok((facts, validate(mesh), is_noisy(&repaired.mesh), shortcuts, repaired.report))
+            let (path, noisy) = (path.clone(), is_noisy(&repaired.mesh));
+            let mesh = validate(if mesh.faces.is_empty() { &repaired.mesh } else { &mesh });
+            Ok(MeshInfo { path, file: facts, mesh, noisy, shortcuts, repair: repaired.report })
         });
         match report {
-            Ok((file, mesh, noisy, shortcuts, repair)) => {
-                let info = MeshInfo { path, file, mesh, noisy, shortcuts, repair };
+            Ok(info) => {
                 if !common.json {
                     print(&answer(&info).text(common))?;
                 }
