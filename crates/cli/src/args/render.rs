@@ -143,12 +143,12 @@ fn parse_range(text: &str) -> Result<[f64; 2], String> {
 
 fn parse_color(text: &str) -> Result<[u8; 3], String> {
     let digits = text.strip_prefix('#').unwrap_or(text);
-    let channel = |i: usize| digits.get(2 * i..2 * i + 2).and_then(|pair| u8::from_str_radix(pair, 16).ok());
     let is_hex = digits.len() == 6 && digits.bytes().all(|b| b.is_ascii_hexdigit());
-    match (is_hex, channel(0), channel(1), channel(2)) {
-        (true, Some(r), Some(g), Some(b)) => Ok([r, g, b]),
-        _ => Err(format!("`{text}` is not a color; write it as #rrggbb, such as #3b6ea5")),
-    }
+    let color = u32::from_str_radix(digits, 16).ok().filter(|_| is_hex);
+    let [_, channels @ ..] = color
+        .map(u32::to_be_bytes)
+        .ok_or_else(|| format!("`{text}` is not a color; write it as #rrggbb, such as #3b6ea5"))?;
+    Ok(channels)
 }
 
 fn parse_background(text: &str) -> Result<Background, String> {
