@@ -62,7 +62,6 @@ fn queries_are_meshes_folders_and_shapes_of_the_index() {
     // Without results the class is predicted all the same.
     let none = search("ball1 -k 0");
     assert!(none["results"].as_array().unwrap().is_empty() && none["predicted"]["label"] == "ball");
-    // No more than there are.
     assert_eq!(ids(&search("ball1 -k 9223372036854775807"), "results").len(), 6);
 }
 

@@ -96,7 +96,6 @@ fn help_fits_two_screens_unless_all_is_asked_for() {
     assert_eq!(place.done("embed -h").out, place.done("embed --help").out);
     let embed = place.done("embed --help-all").out;
     assert!(embed.contains("||Z Z' + 1/2 J E J||_F / p") && embed.contains("--mu"), "{embed}");
-    assert!(place.done("--version").out.starts_with("canonform "));
     assert!(place.done("completions zsh").out.contains("geodesic"));
 }
 
@@ -104,13 +103,9 @@ fn help_fits_two_screens_unless_all_is_asked_for() {
 fn a_closed_pipe_is_not_an_error() {
     let place = Workplace::new();
     place.add("ring.off", &ring());
-    for command in [
-        "info ring.off ring.off ring.off",
-        "info ring.off --json",
-        "embed ring.off -n 20 -o form.npy",
-        "completions bash",
-        "--help",
-    ] {
+    for command in
+        ["info ring.off ring.off ring.off", "embed ring.off -n 20 -o form.npy", "completions bash", "--help"]
+    {
         let mut child = place.command(command).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         drop(child.stdout.take());
         let output = child.wait_with_output().unwrap();
