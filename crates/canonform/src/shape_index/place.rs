@@ -151,39 +151,3 @@ fn slashed(path: &Path) -> String {
     let parts = without_detours(path);
     parts.to_string_lossy().replace(std::path::MAIN_SEPARATOR, "/")
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn texts_do_not_depend_on_how_a_folder_is_named() {
-        let place = tempfile::tempdir().unwrap();
-        let at = |name: &str| place.path().join(name);
-        std::fs::create_dir_all(at("data/meshes/sub")).unwrap();
-        std::fs::create_dir_all(at("work")).unwrap();
-        for (index, text) in [
-            ("work/i", "../data/meshes/sub/a.off"),
-            ("data/i", "meshes/sub/a.off"),
-            ("data/meshes/i", "sub/a.off"),
-        ] {
-            let home = Home::new(&at(index)).unwrap();
-            for folder in ["data/meshes", "work/../data/./meshes"] {
-                let folder = at(folder);
-                let root = Root::new(&folder, &home).unwrap();
-                assert_eq!(root.text(&folder.join("sub/a.off")), text);
-                assert!(root.contains_source("sub/a", text) && root.contains_source("sub/a.off", text));
-                assert!(
-                    !root.contains_source("a", text) && !root.contains_source("sub/a", "../other/sub/a.off")
-                );
-            }
-            assert_eq!(mesh_path(&at(index), text), at("data/meshes/sub/a.off"));
-            assert_eq!(home.text_of(&at("work/other"), "../data/meshes/sub/a.off"), text);
-        }
-        // The folder of the index.
-        let (folder, home) = (at("data"), Home::new(&at("data/i")).unwrap());
-        let root = Root::new(&folder, &home).unwrap();
-        assert!(root.contains_source("a", "a.off") && root.contains_source("b/a", "b/a.off"));
-        assert!(!root.contains_source("a", "../a.off") && !root.contains_source("a", "/a.off"));
-    }
-}
