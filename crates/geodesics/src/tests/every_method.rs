@@ -119,6 +119,52 @@ fn the_nearest_of_several_sources_counts() {
 }
 
 #[test]
+fn distances_from_points_of_edges_and_faces_are_straight_in_the_plane() {
+    let sheet = shapes::jittered_grid(31, 31, 1.0, 0.2, 2);
+    let surface = sheet.intrinsic();
+    let (topology, at) = (surface.topology(), |v: VertexId| sheet.positions[v.index()].coords);
+    let mut sources = Vec::new();
+    for face in [0, 900].map(FaceId) {
+        let [a, b, c] = topology.faces()[face.index()].map(at);
+        for barycentric @ [s, t, u] in [
+            [0.2, 0.5, 0.3],
+            [1.0, 0.0, 0.0],
+            [0.0, 0.4, 0.6],
+            [0.5, 0.5, 0.0],
+            [1e-13, 0.3, 0.7 - 1e-13],
+            [1e-7, 1.0 - 2e-7, 1e-7],
+            [1.0 - 2e-10, 1e-10, 1e-10],
+        ] {
+            sources.push((SurfacePoint::Face { face, barycentric }, a * s + b * t + c * u));
+        }
+    }
+    for edge in [0, 700, 1500].map(EdgeId) {
+        let [a, b] = topology.edges()[edge.index()].map(at);
+        let point = |t| (SurfacePoint::Edge { edge, t }, a + (b - a) * t);
+        sources.extend([0.0, 0.25, 0.9, 1.0, 1e-14].map(point));
+    }
+    // The largest error, as a share of the largest distance, and the mean one, as a share of each.
+    let methods = [(Method::Exact, [1e-11, 1e-9]), (Method::Heat(Default::default()), [f64::INFINITY, 0.03])];
+    for (method, limits) in methods {
+        let solver = method.prepare(&surface, &()).unwrap();
+        for (point, from) in &sources {
+            let source = Source::new(&surface, *point).unwrap();
+            let found = distances_from(solver.as_ref(), &[source], f64::INFINITY);
+            let (mut worst, mut sum, mut largest) = (0.0f64, 0.0, 0.0f64);
+            for (found, p) in found.iter().zip(&sheet.positions) {
+                let straight = (p.coords - from).norm();
+                let error = (found - straight).abs();
+                (worst, largest) = (worst.max(error), largest.max(straight));
+                sum += error / straight.max(0.1);
+            }
+            let errors = [worst / largest, sum / found.len() as f64];
+            let is_close = errors[0] < limits[0] && errors[1] < limits[1];
+            assert!(is_close, "{} from {point}: {errors:?}", method.name());
+        }
+    }
+}
+
+#[test]
 fn distances_beyond_a_limit_are_infinite_and_those_below_it_stay() {
     for surface in surfaces() {
         for (name, promises, solver) in solvers(&surface) {
