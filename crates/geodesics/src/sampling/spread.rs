@@ -81,7 +81,6 @@ impl SpreadSamples {
 mod tests {
     use super::*;
     use crate::dijkstra::Dijkstra;
-    use crate::method::Method;
     use crate::sampling::{FirstSample, farthest_point_sampling};
     use mesh::shapes::icosphere;
 
@@ -92,20 +91,13 @@ mod tests {
         let all = farthest_point_sampling(&solver, 60, FirstSample::default()).unwrap();
         let spread = SpreadSamples::new(&solver, &few, 60).unwrap();
         assert_eq!(spread.samples, all.landmarks());
+        // At least the landmarks and at most all vertices.
+        let samples = |n| SpreadSamples::new(&solver, &few, n).unwrap().samples;
+        assert_eq!((samples(2), samples(1000).len()), (few.landmarks().to_vec(), solver.n_vertices()));
         for v in 0..solver.n_vertices() {
             let gap = |i: usize| all.column(i).unwrap()[v];
             let least = (0..60).map(gap).fold(f64::INFINITY, f64::min);
             assert_eq!(gap(spread.nearest[v]), least);
         }
-    }
-
-    #[test]
-    fn there_are_at_least_the_landmarks_and_at_most_all_vertices() {
-        let solver = Method::default().prepare(icosphere(1).intrinsic(), &()).unwrap();
-        let few = farthest_point_sampling(solver.as_ref(), 5, FirstSample::default()).unwrap();
-        let spread = |n| SpreadSamples::new(solver.as_ref(), &few, n).unwrap();
-        assert_eq!(spread(2).samples, few.landmarks());
-        let all = spread(1000);
-        assert_eq!(all.samples.len(), 42);
     }
 }
