@@ -9,7 +9,7 @@ use crate::functional::{FunctionalMaps, SampledPair, TwoWayMap};
 use crate::local::{between, least_distance};
 use crate::nearest_rows::nearest_rows;
 use crate::operators::{Operators, fitted};
-use crate::params;
+use crate::params::MapParams;
 use crate::shape::MapShape;
 use crate::sketch::SAMPLES_A_FUNCTION;
 use crate::start::Start;
@@ -148,6 +148,7 @@ impl KnownMap {
         &self,
         mut maps: Vec<SurfaceMap>,
         b: &MapShape,
+        params: &MapParams,
     ) -> Result<Vec<SurfaceMap>, DescriptorError> {
         let gap = |map: &SurfaceMap| -> Result<f64, DescriptorError> {
             let both =
@@ -161,7 +162,7 @@ impl KnownMap {
             maps.swap(0, 1);
         }
         if let [first, second] = &maps[..]
-            && second.distortion * params::CLEARLY < first.distortion
+            && second.distortion * params.clearly < first.distortion
         {
             maps.swap(0, 1);
         }

@@ -29,7 +29,7 @@ mod surfaces;
 
 pub use error::{LandmarkConflict, MapError};
 pub use known::KnownMap;
-pub use params::EIGENFUNCTIONS;
+pub use params::MapParams;
 pub use points::{MapElements, mapped_points};
 pub use shape::MapShape;
 pub use surface_map::{MapKind, PartOfWhole, SurfaceMap};

@@ -9,8 +9,8 @@ use crate::curvature::mismatch;
 use crate::error::MapError;
 use crate::known::KnownMap;
 use crate::local::{between, vertex_confidence};
-use crate::params;
-use crate::score::{Scored, least_agreement, misses_one, odds};
+use crate::params::MapParams;
+use crate::score::Scored;
 use crate::search::{MapSearch, Stage};
 use crate::shape::MapShape;
 use crate::start::Start;
@@ -43,9 +43,9 @@ pub(crate) fn scored_as_given(
     search: &MapSearch<'_>,
     given: &KnownMap,
 ) -> Result<Option<SurfaceMap>, MapError> {
-    let shapes = [search.a, search.b];
+    let (params, shapes) = (search.params, [search.a, search.b]);
     let pair = search.samples(usize::MAX);
-    let Some(start) = given.start(&pair, shapes, search.eigenfunctions) else { return Ok(None) };
+    let Some(start) = given.start(&pair, shapes, params.eigenfunctions) else { return Ok(None) };
     // No functions are taken in that the given pairs do not determine.
     let stage = Stage { last: start.first, pair };
     let Some(scored) = search.scored(&stage, vec![start])?.pop() else { return Ok(None) };
@@ -55,8 +55,8 @@ pub(crate) fn scored_as_given(
     let is_other = |best: &Refined| best.found.kind() != scored.kind();
     found.sort_by(|x, y| is_other(x).cmp(&is_other(y)).then(cost(&x.found).total_cmp(&cost(&y.found))));
     let (confidence, rival) = match found.into_iter().next() {
-        Some(best) if best.found.is_same(&scored) => (best.confidence, best.rival),
-        Some(best) => (odds(cost(&scored), Some(cost(&best.found)), params::STEEPNESS), Some(best.found)),
+        Some(best) if best.found.is_same(&scored, params) => (best.confidence, best.rival),
+        Some(best) => (params.odds(cost(&scored), Some(cost(&best.found))), Some(best.found)),
         None => (1.0, None),
     };
     let rival = rival.filter(|_| confidence < Boundary::CERTAIN);
@@ -87,8 +87,8 @@ pub(crate) fn best_of_each_kind(
         }
         let (of_kind, rest): (Vec<_>, Vec<_>) = sketches.into_iter().partition(|one| one.kind() == kind);
         sketches = rest;
-        let least = least_agreement(&of_kind);
-        let (kept, next) = shortlist(of_kind);
+        let least = search.params.least_agreement(&of_kind);
+        let (kept, next) = shortlist(of_kind, search.params);
         others[kind as usize] = next;
         chosen.extend(kept.into_iter().map(|one| (kind, one.is_mixture(least), one)));
     }
@@ -106,15 +106,15 @@ pub(crate) fn best_of_each_kind(
 }
 
 /// The best different sketches of one kind, and the cost of the best one that is not among them.
-fn shortlist(mut of_kind: Vec<Scored>) -> (Vec<Scored>, Option<f64>) {
-    let is_mixture = |one: &Scored| one.is_mixture(params::PURE - params::LOST);
+fn shortlist(mut of_kind: Vec<Scored>, params: &MapParams) -> (Vec<Scored>, Option<f64>) {
+    let is_mixture = |one: &Scored| one.is_mixture(params.pure - params.lost);
     of_kind.sort_by(|x, y| is_mixture(x).cmp(&is_mixture(y)).then(x.cost().total_cmp(&y.cost())));
     let Some(best) = of_kind.first() else { return (of_kind, None) };
     // A rival of a higher cost is right less than once in a hundred times.
-    let (only_pure, most) = (!is_mixture(best), 99f64.powf(1.0 / params::STEEPNESS) * best.cost());
+    let (only_pure, most) = (!is_mixture(best), 99f64.powf(1.0 / params.steepness) * best.cost());
     let mut kept: Vec<Scored> = Vec::new();
     for one in of_kind {
-        if only_pure && is_mixture(&one) || kept.iter().any(|other| other.is_same(&one)) {
+        if only_pure && is_mixture(&one) || kept.iter().any(|other| other.is_same(&one, params)) {
             continue;
         }
         if kept.len() == FINALISTS || one.cost() > most {
@@ -132,14 +132,15 @@ fn judged(
     finalists: &[Finalist],
     next_sketch: Option<f64>,
 ) -> Option<Refined> {
+    let params = search.params;
     // Squared, so that the odds are the same power of its ratio as of that of sketches, nearly.
     let cost = |one: &Finalist| one.sketched * mismatch_of_coset(one.coset, finalists).unwrap_or(1.0).powi(2);
     let mut of_kind: Vec<&Finalist> = finalists.iter().filter(|one| one.kind == kind).collect();
     of_kind.sort_by(|x, y| cost(x).total_cmp(&cost(y)));
     let (mut best, mut rival) = (*of_kind.first()?, of_kind.get(1).copied());
     let mut confidence = match rival {
-        Some(rival) => odds(cost(best), Some(cost(rival)), params::STEEPNESS),
-        None => odds(best.sketched, next_sketch, params::STEEPNESS),
+        Some(rival) => params.odds(cost(best), Some(cost(rival))),
+        None => params.odds(best.sketched, next_sketch),
     };
     // Without an inside, refinement is the judge. An initial map stands unless another one is clearly better, which the sketches
     // tell.
@@ -151,7 +152,7 @@ fn judged(
         std::mem::swap(&mut best, second);
         confidence = confidence.min(DOUBTED);
     }
-    if best.refined.is_mixture(params::PURE) || misses_one(&best.refined.misses) {
+    if best.refined.is_mixture(params.pure) || params.misses_one(&best.refined.misses) {
         confidence = confidence.min(DOUBTED);
     }
     let rival = rival.filter(|_| confidence < Boundary::CERTAIN);
@@ -194,12 +195,13 @@ impl Refined {
 
 /// A sketch on all samples and eigenfunctions.
 fn refined(search: &MapSearch<'_>, sketch: &Scored) -> Result<Scored, DescriptorError> {
+    let params = search.params;
     let pair = search.known.and_landmarks(search.samples(usize::MAX), [search.a, search.b]);
-    let start = Start { maps: sketch.functional.sample_maps(&pair), first: params::FUNCTIONS };
-    let refined = search.scored(&Stage { pair, last: search.eigenfunctions }, vec![start])?;
+    let start = Start { maps: sketch.functional.sample_maps(&pair), first: params.functions };
+    let refined = search.scored(&Stage { pair, last: params.eigenfunctions }, vec![start])?;
     // Refinement may mix two maps, where the sketch is right.
     let agrees = |found: &Scored| match (sketch.agreement, found.agreement) {
-        (Some(before), Some(after)) => after * before.signum() > before.abs() - params::LOST,
+        (Some(before), Some(after)) => after * before.signum() > before.abs() - params.lost,
         _ => true,
     };
     Ok(refined.into_iter().find(agrees).unwrap_or_else(|| sketch.clone()))

@@ -10,8 +10,8 @@ use crate::functional::{FunctionalMaps, SampledPair};
 use crate::known::KnownMap;
 use crate::nearest_rows::nearest_rows;
 use crate::operators::fitted;
-use crate::params;
-use crate::score::{Scored, distinct};
+use crate::params::MapParams;
+use crate::score::Scored;
 use crate::shape::MapShape;
 use crate::sketch::Sketch;
 use crate::start::Start;
@@ -23,32 +23,32 @@ pub(crate) struct MapSearch<'a> {
     pub(crate) a: &'a MapShape,
     pub(crate) b: &'a MapShape,
     pub(crate) known: &'a KnownMap,
-    /// Most eigenfunctions of each surface.
-    pub(crate) eigenfunctions: usize,
+    pub(crate) params: &'a MapParams,
     pub(crate) budget: &'a Budget,
 }
 
 impl MapSearch<'_> {
     /// Different sketches from all starts, and those that differ from them by a mirror.
     pub(crate) fn sketches(&self) -> Result<Vec<Scored>, MapError> {
-        let known = self.known;
+        let MapSearch { params, known, .. } = self;
         let mut starts = self.starts(&[1.0, -1.0])?;
-        known.check_orientation(&starts)?;
+        known.check_orientation(&starts, params)?;
         let fits = known.fitted([self.a, self.b]).into_iter().map(FunctionalMaps::from);
         starts.extend(self.sketched(&self.stage(2), fits)?);
         // What is beside an identity, whose score is rounding, has its mirrors already. Those of two poses are near 1e-5.
         if starts.iter().all(|start| start.score > f64::EPSILON.sqrt()) {
-            let turned = self.turned(&distinct(starts.clone()))?;
+            let turned = self.turned(&params.distinct(starts.clone()))?;
             starts.extend(self.sketched(&self.stage(2), turned.into_iter())?);
         }
         let stage = self.stage(1);
-        let found = self.sketched(&stage, distinct(starts).into_iter().map(|start| start.functional))?;
-        let mut found = self.with_mirrored(distinct(found))?;
+        let found =
+            self.sketched(&stage, params.distinct(starts).into_iter().map(|start| start.functional))?;
+        let mut found = self.with_mirrored(params.distinct(found))?;
         let initial = known.start(&stage.pair, [self.a, self.b], stage.last).into_iter().collect();
         let coset = found.len();
-        let favored = |one: Scored| Scored { score: one.score / params::CLEARLY, coset, ..one };
+        let favored = |one: Scored| Scored { score: one.score / params.clearly, coset, ..one };
         found.extend(self.scored(&stage, initial)?.into_iter().map(favored));
-        Ok(known.respecting(found))
+        Ok(known.respecting(found, params))
     }
 
     /// Different maps that are fitted with these signs, or follow from alignments of the forms; on few samples.
@@ -58,7 +58,7 @@ impl MapSearch<'_> {
         let fits = signs.iter().flat_map(|sign| operators().flat_map(|(x, y)| fitted(&[[x, y]], *sign)));
         let mut found = self.sketched(&stage, fits.map(FunctionalMaps::from))?;
         found.extend(self.scored(&stage, Start::aligned(self.a, self.b, stage.pair.a.nrows())?)?);
-        Ok(distinct(found))
+        Ok(self.params.distinct(found))
     }
 
     /// Maps that take the ends of limbs to where found ones take them, with the other orientation: of people, those that exchange
@@ -106,11 +106,12 @@ impl MapSearch<'_> {
         found.extend(self.sketched(&stage, turned.into_iter())?);
         let sides = mirrors.map(|of| of.sides.as_slice());
         let mut all = Vec::new();
-        for (coset, one) in distinct(found).into_iter().enumerate() {
+        for (coset, one) in self.params.distinct(found).into_iter().enumerate() {
             let mut others = self.sketched(&stage, mirrored(&one, sides))?;
             // What mixes two maps says nothing about either.
-            others
-                .retain(|other| other.kind() != one.kind() && !other.is_mixture(params::PURE - params::LOST));
+            others.retain(|other| {
+                other.kind() != one.kind() && !other.is_mixture(self.params.pure - self.params.lost)
+            });
             for other in &mut others {
                 other.score = (one.score * other.score).sqrt();
                 other.coset = coset;
@@ -124,7 +125,7 @@ impl MapSearch<'_> {
 
     /// Refinement by one over so many of the samples and eigenfunctions of sketches.
     pub(crate) fn stage(&self, over: usize) -> Stage {
-        Stage { pair: self.samples(params::SAMPLES / over), last: params::FUNCTIONS / over }
+        Stage { pair: self.samples(self.params.samples / over), last: self.params.functions / over }
     }
 
     /// Eigenfunctions at the first `n` samples of both surfaces.
@@ -136,10 +137,10 @@ impl MapSearch<'_> {
 
     /// Refines starts.
     pub(crate) fn scored(&self, stage: &Stage, starts: Vec<Start>) -> Result<Vec<Scored>, DescriptorError> {
-        let last = stage.last.min(self.eigenfunctions);
+        let last = stage.last.min(self.params.eigenfunctions);
         let one = |start: Start| {
             self.budget.check().map_err(LinalgError::from)?;
-            Scored::new([self.a, self.b], self.known, Sketch::new(&stage.pair, start, last))
+            Scored::new([self.a, self.b], self.known, self.params, Sketch::new(&stage.pair, start, last))
         };
         starts.into_par_iter().map(one).collect()
     }

@@ -5,6 +5,7 @@ use descriptors::Side;
 
 use crate::error::MapError;
 use crate::known::KnownMap;
+use crate::params::MapParams;
 use crate::part::part_maps;
 use crate::refine::{best_of_each_kind, scored_as_given};
 use crate::search::MapSearch;
@@ -47,8 +48,6 @@ const SHARES: [f64; 2] = [0.25, 0.92];
 ///    landmarks. Of distances that a path through what is missing may shorten, only bounds are known.
 /// 3. Of each orientation, the map that keeps distances, curvature and the products of functions best is taken.
 ///
-/// `eigenfunctions` are the most of each surface.
-///
 /// # Errors
 /// [`MapError::Contradiction`] for landmarks that cannot all be right; [`MapError::Descriptor`], also if the budget of the observer
 /// is exceeded.
@@ -56,15 +55,14 @@ pub fn map_surfaces(
     a: &MapShape,
     b: &MapShape,
     known: &KnownMap,
-    eigenfunctions: usize,
+    params: &MapParams,
     observer: &dyn Observer,
 ) -> Result<Vec<SurfaceMap>, MapError> {
     let side = possible_part(a, b);
     known.check([a, b], side)?;
     let budget = observer.budget();
-    let search = MapSearch { a, b, known, eigenfunctions, budget: &budget };
-    let best = best_of_each_kind(&search, search.sketches()?)?;
-    let mut maps = best.iter().map(|best| best.on_all_vertices([a, b])).collect::<Result<Vec<_>, _>>()?;
+    let search = MapSearch { a, b, known, params, budget: &budget };
+    let mut maps = search.maps()?;
     if let Some(side) = side.filter(|_| known.functions.is_none()) {
         let of_part = part_maps(&search, side)?;
         let least = |maps: &[SurfaceMap]| maps.iter().map(|map| map.distortion).fold(f64::INFINITY, f64::min);
@@ -72,7 +70,7 @@ pub fn map_surfaces(
             maps = of_part;
         }
     }
-    Ok(known.finished(maps, b)?)
+    Ok(known.finished(maps, b, params)?)
 }
 
 /// A map that is given, the `initial` one of `known`, without its refinement: how much it changes distances, how far it keeps the
@@ -86,13 +84,13 @@ pub fn score_map(
     a: &MapShape,
     b: &MapShape,
     known: &KnownMap,
-    eigenfunctions: usize,
+    params: &MapParams,
     observer: &dyn Observer,
 ) -> Result<Option<SurfaceMap>, MapError> {
     known.check([a, b], None)?;
     let budget = observer.budget();
     let others = KnownMap { initial: Vec::new(), ..known.clone() };
-    scored_as_given(&MapSearch { a, b, known: &others, eigenfunctions, budget: &budget }, known)
+    scored_as_given(&MapSearch { a, b, known: &others, params, budget: &budget }, known)
 }
 
 /// The surface that may be a part of the other; `None` if neither has a boundary and is much smaller.
@@ -104,5 +102,14 @@ fn possible_part(a: &MapShape, b: &MapShape) -> Option<Side> {
         () if is_part(a, share) => Some(Side::First),
         () if is_part(b, 1.0 / share) => Some(Side::Second),
         () => None,
+    }
+}
+
+impl MapSearch<'_> {
+    /// The best map of each orientation of two wholes.
+    fn maps(&self) -> Result<Vec<SurfaceMap>, MapError> {
+        let shapes = [self.a, self.b];
+        let best = best_of_each_kind(self, self.sketches()?)?;
+        Ok(best.iter().map(|best| best.on_all_vertices(shapes)).collect::<Result<_, _>>()?)
     }
 }

@@ -57,7 +57,7 @@ pub fn correspond<S: Borrow<Surface>>(
     options: &CorrespondOptions,
     observer: &dyn Observer,
 ) -> Result<Correspondence, Error> {
-    found(a, b, options, &|known| map_surfaces(&a.shape, &b.shape, known, options.eigenfunctions, observer))
+    found(a, b, options, &|known| map_surfaces(&a.shape, &b.shape, known, &options.maps, observer))
 }
 
 /// What the [initial](maps::KnownMap::initial) map is worth, without its refinement: the one map of the result has its vertices.
@@ -72,9 +72,7 @@ pub fn score_map<S: Borrow<Surface>>(
     observer: &dyn Observer,
 ) -> Result<Correspondence, Error> {
     let found = found(a, b, options, &|known| {
-        Ok(maps::score_map(&a.shape, &b.shape, known, options.eigenfunctions, observer)?
-            .into_iter()
-            .collect())
+        Ok(maps::score_map(&a.shape, &b.shape, known, &options.maps, observer)?.into_iter().collect())
     })?;
     match found.maps.is_empty() {
         true => Err(Error::UnusableMap(

@@ -13,9 +13,6 @@ use crate::form::embed;
 use base::Observer;
 use mesh::Surface;
 
-/// Vertices of each surface on which maps are refined before all others follow.
-const SPREAD: usize = 1000;
-
 /// A surface with everything that maps to other surfaces are found by.
 #[derive(Debug)]
 pub struct MappedSurface<S = Surface> {
@@ -39,10 +36,10 @@ impl<S: Borrow<Surface>> MappedSurface<S> {
         let embedded = embed(repaired, &options.form, observer)?;
         let form = embedded.form(repaired)?;
         let solver = options.form.geodesic.prepare(repaired.intrinsic(), observer)?;
-        let spread = SpreadSamples::new(solver.as_ref(), &embedded.distances, SPREAD)?;
+        let spread = SpreadSamples::new(solver.as_ref(), &embedded.distances, options.spread)?;
         let from_cut = from_cut(repaired, solver.as_ref())?;
         drop(solver);
-        let spectrum = LaplaceSpectrum::new(repaired.intrinsic(), options.eigenfunctions, observer)?;
+        let spectrum = LaplaceSpectrum::new(repaired.intrinsic(), options.maps.eigenfunctions, observer)?;
         let SpreadSamples { samples, nearest, .. } = spread;
         let (mesh, distances) = (repaired.mesh(), embedded.distances);
         let shape = MapShape::new(&form, mesh, spectrum, distances, samples, nearest, from_cut)?;

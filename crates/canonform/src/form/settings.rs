@@ -356,9 +356,11 @@ impl FormSettings {
 impl MapSettings {
     /// How surfaces of such forms are mapped.
     pub fn options(&self, form: FormOptions) -> CorrespondOptions {
-        let usual = CorrespondOptions::default();
-        let eigenfunctions = self.eigenfunctions.unwrap_or(usual.eigenfunctions);
-        CorrespondOptions { form, eigenfunctions, ..usual }
+        let mut options = CorrespondOptions { form, ..CorrespondOptions::default() };
+        if let Some(most) = self.eigenfunctions {
+            options.maps.eigenfunctions = most;
+        }
+        options
     }
 }
 

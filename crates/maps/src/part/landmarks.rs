@@ -2,7 +2,6 @@
 
 use super::sides::Sides;
 use crate::nearest_rows::first_of;
-use crate::params;
 
 /// Landmarks of the part that are placed, at most. A convention.
 const PLACED: usize = 12;
@@ -43,7 +42,7 @@ pub(super) fn placements(sides: &Sides<'_>, n: usize) -> Vec<Vec<(usize, usize)>
             for (y, alone) in alone.iter().enumerate() {
                 let losses = placed.images.iter().zip(&known);
                 let losses = losses.map(|(z, known)| known.loss(sides.in_whole[(y, *z)], f64::INFINITY));
-                longer.push((placed.score + losses.sum::<f64>() / params::SAME.powi(2) + alone, (h, y)));
+                longer.push((placed.score + losses.sum::<f64>() / sides.params.same.powi(2) + alone, (h, y)));
             }
         }
         let longer = first_of(longer, MANY).into_iter().map(|(score, (h, y))| {
@@ -64,7 +63,7 @@ fn apart(sides: &Sides<'_>, placements: Vec<Placement>, n: usize) -> Vec<Placeme
         if kept.len() >= n {
             break;
         }
-        let limit = 2.0 * params::SAME * placed.images.len() as f64;
+        let limit = 2.0 * sides.params.same * placed.images.len() as f64;
         let is_new = |other: &Placement| {
             let gaps = other.images.iter().zip(&placed.images).map(|(y, z)| sides.in_whole[(*y, *z)]);
             gaps.sum::<f64>() >= limit
@@ -79,7 +78,7 @@ fn apart(sides: &Sides<'_>, placements: Vec<Placement>, n: usize) -> Vec<Placeme
 /// Landmarks of the part, each the farthest from those before it; the first is farthest from the cut.
 fn chosen(sides: &Sides<'_>) -> Vec<usize> {
     let far: Vec<usize> =
-        (0..sides.in_part.nrows()).filter(|l| sides.to_cut(*l) > 2.0 * params::SAME).collect();
+        (0..sides.in_part.nrows()).filter(|l| sides.to_cut(*l) > 2.0 * sides.params.same).collect();
     let mut gaps: Vec<f64> = far.iter().map(|l| sides.to_cut(*l)).collect();
     let mut chosen = Vec::new();
     while chosen.len() < PLACED.min(far.len()) {

@@ -11,8 +11,7 @@ use super::places::{Fineness, Places, change_of_curvature, change_of_distances, 
 use super::sides::Sides;
 use super::vertices::{Coverage, all_vertices, onto_part};
 use crate::local::vertex_confidence;
-use crate::params;
-use crate::score::{misses_one, odds};
+use crate::params::MapParams;
 use crate::search::MapSearch;
 use crate::sketch::SAMPLES_A_FUNCTION;
 use crate::surface_map::{DOUBTED, MapKind, PartOfWhole, SurfaceMap};
@@ -58,7 +57,7 @@ impl ScoredPlaces {
         let distortion = change_of_distances(sides, &places);
         let curvature = change_of_curvature(sides, &places);
         // How far it takes known points from their partners on average, beyond what is respected.
-        let miss = (sides.miss(&places) - params::SAME).max(0.0);
+        let miss = (sides.miss(&places) - sides.params.same).max(0.0);
         let functional = functional(sides, &places);
         let defect = functional.as_ref().map_or(1.0, |map| defect(sides, map));
         let score = distortion + CURVATURE * curvature + DEFECT * defect + miss;
@@ -79,7 +78,7 @@ impl ScoredPlaces {
 /// The best maps of each orientation, one surface of which is a part of the other. Of what is known, landmarks and an initial map
 /// count.
 pub(crate) fn part_maps(search: &MapSearch<'_>, side: Side) -> Result<Vec<SurfaceMap>, DescriptorError> {
-    let MapSearch { known, budget, .. } = *search;
+    let MapSearch { known, params, budget, .. } = *search;
     let Some(sides) = Sides::new(search, side)? else { return Ok(Vec::new()) };
     let starts = placements(&sides, SKETCHES);
     budget.check().map_err(LinalgError::from)?;
@@ -100,7 +99,7 @@ pub(crate) fn part_maps(search: &MapSearch<'_>, side: Side) -> Result<Vec<Surfac
     }
     let initial = sides.anchors(known.initial_pairs());
     if !initial.is_empty() {
-        found.push(sketch(&placed(&sides, &initial, SKETCHED), params::CLEARLY));
+        found.push(sketch(&placed(&sides, &initial, SKETCHED), params.clearly));
     }
     found.sort_by(|a, b| a.score.total_cmp(&b.score));
     let mut maps = Vec::new();
@@ -111,8 +110,8 @@ pub(crate) fn part_maps(search: &MapSearch<'_>, side: Side) -> Result<Vec<Surfac
         budget.check().map_err(LinalgError::from)?;
         let mut different: Vec<&ScoredPlaces> = Vec::new();
         for sketch in found.iter().filter(|found| found.kind() == kind) {
-            let is_new = |other: &&ScoredPlaces| sides.gap(&sketch.places, &other.places) > params::SAME;
-            if different.len() < params::SKETCHES && different.iter().all(is_new) {
+            let is_new = |other: &&ScoredPlaces| sides.gap(&sketch.places, &other.places) > params.same;
+            if different.len() < params.sketches && different.iter().all(is_new) {
                 different.push(sketch);
             }
         }
@@ -128,10 +127,11 @@ pub(crate) fn part_maps(search: &MapSearch<'_>, side: Side) -> Result<Vec<Surfac
 /// The first of some maps in the order of their scores, refined; with the next one if that is nearly as good.
 fn best(sides: &Sides<'_>, found: &[ScoredPlaces]) -> Result<Option<SurfaceMap>, DescriptorError> {
     let Some((best, others)) = found.split_first() else { return Ok(None) };
-    let rival = others.iter().find(|other| sides.gap(&best.places, &other.places) > 2.0 * params::SAME);
-    let alone = odds(best.score, rival.map(|rival| rival.score), STEEPNESS);
+    let rival = others.iter().find(|other| sides.gap(&best.places, &other.places) > 2.0 * sides.params.same);
+    let alone =
+        MapParams { steepness: STEEPNESS, ..*sides.params }.odds(best.score, rival.map(|rival| rival.score));
     let mut confidence = alone * DOUBTFUL.probability(best.distortion);
-    if misses_one(&[sides.miss(&best.places)]) {
+    if sides.params.misses_one(&[sides.miss(&best.places)]) {
         confidence = confidence.min(DOUBTED);
     }
     let mut map = refined(sides, best, confidence)?;
@@ -179,7 +179,7 @@ fn refined(sides: &Sides<'_>, sketch: &ScoredPlaces, confidence: f64) -> Result<
 /// The map of the first eigenfunctions of the whole to those of the part with eigenvalues as low, by least squares over the samples.
 fn functional(sides: &Sides<'_>, places: &[usize]) -> Option<Matrix> {
     let [part, whole] = [sides.part, sides.whole].map(|shape| &shape.spectrum);
-    let n = params::FUNCTIONS.min(whole.values.len());
+    let n = sides.params.functions.min(whole.values.len());
     // Eigenvalues at unit area; those of the part in the unit of the whole are larger.
     let last = whole.values[n - 1] * sides.scale.powi(2);
     let k = part.values.iter().filter(|value| **value <= last).count().min(places.len() / SAMPLES_A_FUNCTION);

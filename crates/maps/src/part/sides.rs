@@ -9,7 +9,7 @@ use surface::VertexId;
 
 use crate::curvature::{TIMES, smoothed};
 use crate::local::between;
-use crate::params;
+use crate::params::MapParams;
 use crate::search::MapSearch;
 use crate::shape::MapShape;
 
@@ -40,6 +40,7 @@ pub(super) struct Sides<'a> {
     pub(super) whole: &'a MapShape,
     /// Which of the two surfaces is the part.
     pub(super) side: Side,
+    pub(super) params: &'a MapParams,
     /// The length of one at unit area of the part.
     pub(super) scale: f64,
     /// Corresponding samples that are known: positions in both lists of samples.
@@ -58,7 +59,7 @@ pub(super) struct Sides<'a> {
 impl<'a> Sides<'a> {
     /// `None` unless the part has a cut.
     pub(super) fn new(search: &MapSearch<'a>, side: Side) -> Result<Option<Self>, DescriptorError> {
-        let MapSearch { a, b, known, .. } = *search;
+        let MapSearch { a, b, known, params, .. } = *search;
         let [part, whole] = if side == Side::First { [a, b] } else { [b, a] };
         let Some(from_cut) = &part.from_cut else { return Ok(None) };
         let scale = part.size / whole.size;
@@ -72,6 +73,7 @@ impl<'a> Sides<'a> {
             part,
             whole,
             side,
+            params,
             scale,
         };
         sides.known = sides.sampled(known.landmarks.iter().copied()).collect();
@@ -95,7 +97,7 @@ impl<'a> Sides<'a> {
     /// Changes of distances count up to this when points are placed: the pairs of a few wrong anchors, or with a path through what is
     /// missing. A part of a built-in man is mapped to him with a mean error of 0.0140 with .1, and of 0.0142 with .2.
     pub(super) fn max_change(&self) -> f64 {
-        2.0 * params::SAME
+        2.0 * self.params.same
     }
 
     /// What is known of the distance of a landmark and a sample of the part.
