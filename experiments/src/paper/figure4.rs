@@ -8,7 +8,6 @@ use anyhow::Result;
 use canonform::compare::{embedded_distances, form_alignments};
 use canonform::embed::{EmbedMethod, FormOptions, embed};
 use descriptors::{CanonicalForm, Normalization};
-use geodesics::{FastMarchingOptions, Method, ObtuseTreatment};
 use linalg::DistanceMatrix;
 use nmds::{Bandwidth, classical_full, stress};
 use rayon::prelude::*;
@@ -43,10 +42,8 @@ const SCALES: [[&str; 4]; 3] = [
 ];
 
 pub(crate) fn figure4(context: &Context<'_>) -> Result<Record> {
-    let marching = FastMarchingOptions { obtuse: ObtuseTreatment::Unfold, ..FastMarchingOptions::default() };
     let (samples, rank) = (context.options.samples, context.options.rank);
-    let nmds =
-        FormOptions { geodesic: Method::FastMarching(marching), ..low_rank(samples, rank, context.seed) };
+    let nmds = low_rank(samples, rank, context.seed);
     let method = EmbedMethod::KernelPca { rank: Some(rank), bandwidth: Bandwidth::Mean };
     let methods = [(NMDS, nmds.clone()), (BASELINE, FormOptions { method, ..nmds })];
     let shapes = context.collection.all();
