@@ -1,5 +1,7 @@
 //! How a changed mesh is related to the original.
 
+use std::sync::LazyLock;
+
 use canonform::collection::list_shapes;
 use canonform::descriptors::Side;
 use canonform::relations::{Change, MeshGeometry, Relation, RelationKind};
@@ -13,7 +15,7 @@ use mesh::{TriMesh, shapes};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use crate::support::pose;
+use crate::support::{SHAPES, pose};
 
 /// Changes after one another, with the kind of relation and the changes that must be told.
 type Variant = (&'static [Damage], RelationKind, &'static [Change]);
@@ -174,6 +176,8 @@ fn near_bodies_with_noise_are_not_one_surface() {
 
 #[test]
 fn two_poses_and_two_bodies_are_not_one_surface() {
+    // Made before the threads below wait for them, which make them.
+    LazyLock::force(&SHAPES);
     let options = ArticulatedOptions { n_vertices: 1000, ..Default::default() };
     let all: Vec<_> = Family::all()
         .into_par_iter()
