@@ -500,11 +500,6 @@ impl<'a> ClusterShape<'a> {
         self.meshes(other).is_some_and(|[own, others]| own.merit_over(others).is_some())
     }
 
-    /// Which of the two is rather kept, and why, if this is how another shape is related to it.
-    fn more_exact(&self, other: &Self, told: &Relation) -> Option<(Side, Merit)> {
-        told.more_exact(self.meshes(other)?)
-    }
-
     /// Its files but the first, which have the bytes of that.
     fn copies(&self) -> impl Iterator<Item = DuplicateMember> {
         let of = &self.files[0].id;
@@ -526,6 +521,21 @@ impl<'a> ClusterShape<'a> {
             true => self.files.iter().map(member).collect(),
             false => self.files[..1].iter().map(member).chain(self.copies()).collect(),
         }
+    }
+}
+
+/// A shape that is proved to be the keeper of a group.
+struct Proved<'a> {
+    shape: &'a ClusterShape<'a>,
+    told: Relation,
+    /// Which of the two is rather kept, the keeper being the first, and why.
+    exact: Option<(Side, Merit)>,
+}
+
+impl<'a> Proved<'a> {
+    fn new(keeper: &ClusterShape<'_>, shape: &'a ClusterShape<'a>, told: Relation) -> Self {
+        let exact = keeper.meshes(shape).and_then(|meshes| told.more_exact(meshes));
+        Self { shape, told, exact }
     }
 }
 
@@ -567,24 +577,26 @@ fn groups(
         n_compared += relations.iter().flatten().count();
         let is_one =
             |told: &Relation| options.kinds.contains(&told.kind) && told.confidence >= options.min_confidence;
-        let (mut rest, mut same) = (Vec::new(), Vec::new());
+        let (mut rest, mut proved) = (Vec::new(), Vec::new());
         for (other, relation) in others.into_iter().zip(relations) {
             match relation.filter(is_one) {
-                Some(relation) => same.push((other, relation)),
+                Some(relation) => proved.push((other, relation)),
                 None => rest.push(other),
             }
         }
+        let mut same: Vec<Proved<'_>> =
+            proved.into_par_iter().map(|(other, told)| Proved::new(keeper, other, told)).collect();
         // Merits over one shape and of another one over that need not add up.
-        let is_better = |(other, told): &(&ClusterShape<'_>, Relation)| {
-            !is_in(&rough, other) && matches!(keeper.more_exact(other, told), Some((Side::Second, _)))
+        let is_better = |other: &Proved<'_>| {
+            !is_in(&rough, other.shape) && matches!(other.exact, Some((Side::Second, _)))
         };
-        if !is_in(&rough, keeper) && same.par_iter().any(is_better) {
+        if !is_in(&rough, keeper) && same.iter().any(is_better) {
             rough.push(keeper);
             continue;
         }
         // What fits a shape better that is not the keeper's goes to the group of that.
         let gap = |told: &Relation| told.evidence.surface_gap.map_or(0.0, |gap| gap.rms);
-        let fits_better = |(other, told): &(&ClusterShape<'_>, Relation)| {
+        let fits_better = |Proved { shape: other, told, .. }: &Proved<'_>| {
             if !told.kind.is_one_surface() || gap(told) == 0.0 {
                 return Ok(false);
             }
@@ -602,11 +614,12 @@ fn groups(
         same.retain(|_| goes.next() == Some(&false));
         (0..=same.len()).for_each(|_| observer.step());
         let place = |kind| RelationKind::ALL.iter().position(|known| *known == kind);
-        same.sort_by(|(a, told), (b, other)| {
-            place(told.kind).cmp(&place(other.kind)).then_with(|| a.files[0].id.cmp(&b.files[0].id))
+        same.sort_by(|a, b| {
+            let by_kind = place(a.told.kind).cmp(&place(b.told.kind));
+            by_kind.then_with(|| a.shape.files[0].id.cmp(&b.shape.files[0].id))
         });
         left.retain(|shape| {
-            !std::ptr::eq(*shape, keeper) && same.iter().all(|(other, _)| !std::ptr::eq(*other, *shape))
+            !std::ptr::eq(*shape, keeper) && same.iter().all(|other| !std::ptr::eq(other.shape, *shape))
         });
         groups.extend(group(keeper, same, places, options));
     }
@@ -616,20 +629,20 @@ fn groups(
 /// The files of a shape to keep and of others that are proved to be it; `None` if there is one only.
 fn group(
     keeper: &ClusterShape<'_>,
-    same: Vec<(&ClusterShape<'_>, Relation)>,
+    same: Vec<Proved<'_>>,
     places: &Places<'_>,
     options: &DuplicateOptions,
 ) -> Option<DuplicateGroup> {
     let why = why(keeper, &same, places);
     let mut members: Vec<DuplicateMember> = keeper.copies().collect();
     let mut left = VecDeque::from(same);
-    while let Some((shape, relation)) = left.pop_front() {
+    while let Some(Proved { shape, told: relation, .. }) = left.pop_front() {
         members.extend(shape.members(&keeper.files[0].id, &relation));
         // What is no exact copy of the keeper may have exact copies itself.
         let may_have = |other: &ClusterShape<'_>| {
             !relation.kind.is_one_geometry() && shape.files[0].vertices == other.files[0].vertices
         };
-        left.retain(|(other, _)| {
+        left.retain(|Proved { shape: other, .. }| {
             let found = may_have(other).then(|| related(shape, other, Relation::by_vertices)).flatten();
             let found = found.filter(|told| told.kind.is_one_geometry());
             members.extend(found.iter().flat_map(|told| other.members(&shape.files[0].id, told)));
@@ -657,7 +670,7 @@ fn related(
 }
 
 /// Why a shape is kept: its merits, and without any what comes first.
-fn why(keeper: &ClusterShape<'_>, same: &[(&ClusterShape<'_>, Relation)], places: &Places<'_>) -> String {
+fn why(keeper: &ClusterShape<'_>, same: &[Proved<'_>], places: &Places<'_>) -> String {
     let file = &keeper.files[0];
     let against_file = |other: &DuplicateFile| match places.keep {
         Keep::In(_) if places.wanted(file) != places.wanted(other) => "it is in the folder to keep",
@@ -671,13 +684,13 @@ fn why(keeper: &ClusterShape<'_>, same: &[(&ClusterShape<'_>, Relation)], places
             first.map_or("its name comes first", |first| ORDER[first])
         }
     };
-    let merit = |(other, told): &(&ClusterShape<'_>, Relation)| match keeper.more_exact(other, told) {
+    let merit = |other: &Proved<'_>| match other.exact {
         Some((Side::First, merit)) => Some(merit.words()),
         _ => None,
     };
     let mut reasons: Vec<&str> = same.iter().filter_map(merit).collect();
     if reasons.is_empty() {
-        let others = same.iter().map(|(other, _)| &other.files[0]).chain(&keeper.files[1..]);
+        let others = same.iter().map(|other| &other.shape.files[0]).chain(&keeper.files[1..]);
         reasons = others.map(against_file).collect();
     }
     let mut seen = HashSet::new();
