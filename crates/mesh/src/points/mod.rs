@@ -9,14 +9,12 @@ mod select;
 mod smooth;
 mod star;
 
-use std::collections::HashMap;
-
 use base::Observer;
 use nalgebra::Point3;
 use serde::Serialize;
 use surface::VertexId;
 
-use crate::coincidence::position_key;
+use crate::coincidence::coincident_pairs;
 use crate::error::{MIN_POINTS, MeshError};
 use crate::face_set::check_finite;
 use crate::orientation::orient_consistently;
@@ -113,12 +111,12 @@ pub fn triangulate_points(
     check_finite(points)?;
     let cloud = TriMesh { positions: points.to_vec(), faces: Vec::new() };
     let unit = cloud.unit();
-    let (distinct, of_point) = without_copies(points, unit);
+    let scaled: Vec<Point3<f64>> = points.iter().map(|p| p / unit).collect();
+    let (distinct, of_point) = without_copies(&scaled);
     if distinct.len() < MIN_POINTS {
         return Err(MeshError::TooFewPoints { n_distinct: distinct.len() });
     }
-    let scaled: Vec<Point3<f64>> = distinct.iter().map(|&i| points[i] / unit).collect();
-    let smooth = smooth::smooth(scaled, &budget)?;
+    let smooth = smooth::smooth(distinct.iter().map(|&i| scaled[i]).collect(), &budget)?;
     budget.check()?;
     let neighbors = Neighbors::new(&smooth.points);
     let stars = star::stars(&smooth.points, &neighbors);
@@ -154,16 +152,13 @@ pub fn triangulate_points(
 }
 
 /// The first point in every position, ascending, and for each point its number among them.
-fn without_copies(points: &[Point3<f64>], unit: f64) -> (Vec<usize>, Vec<u32>) {
-    let mut known = HashMap::with_capacity(points.len());
-    let mut distinct = Vec::new();
-    let mut number = |(i, p): (usize, &Point3<f64>)| {
-        *known.entry(position_key(&(p / unit))).or_insert_with(|| {
-            distinct.push(i);
-            distinct.len() as u32 - 1
-        })
-    };
-    let of_point = points.iter().enumerate().map(&mut number).collect();
+fn without_copies(points: &[Point3<f64>]) -> (Vec<usize>, Vec<u32>) {
+    let mut first: Vec<u32> = (0..points.len() as u32).collect();
+    let pairs = coincident_pairs(points, 0..points.len() as u32);
+    pairs.into_iter().for_each(|[one, other]| first[other as usize] = one);
+    let distinct: Vec<usize> = (0..points.len()).filter(|&i| first[i] as usize == i).collect();
+    let number = |first: &u32| distinct.partition_point(|&i| i < *first as usize) as u32;
+    let of_point = first.iter().map(number).collect();
     (distinct, of_point)
 }
 

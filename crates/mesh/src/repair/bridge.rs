@@ -47,7 +47,9 @@ fn shortest_links(positions: &[Point3<f64>], labels: &[u32], budget: &Budget) ->
     let mut groups = DisjointSets::new(n_components);
     let mut links = Vec::with_capacity(n_components.saturating_sub(1));
     // Components that touch: many points in one place would make the search quadratic.
-    for ends in coincident_stars(positions) {
+    let mut touching = coincident_pairs(positions, 0..positions.len() as u32);
+    touching.sort_unstable();
+    for ends in touching {
         let [a, b] = ends.map(|v| labels[v as usize]);
         if groups.union(a, b) {
             links.push(link(positions, ends));
@@ -102,19 +104,6 @@ fn near_links(
         links.extend(found.iter().map(|&(_, other)| link(positions, [v.min(other), v.max(other)])));
     }
     Ok(links)
-}
-
-/// The lowest vertex at every position with each of the others there, in ascending order.
-fn coincident_stars(positions: &[Point3<f64>]) -> Vec<[u32; 2]> {
-    let mut stars = coincident_pairs(positions, 0..positions.len() as u32);
-    // Consecutive pairs share a vertex.
-    for i in 1..stars.len() {
-        if stars[i][0] == stars[i - 1][1] {
-            stars[i][0] = stars[i - 1][0];
-        }
-    }
-    stars.sort_unstable();
-    stars
 }
 
 fn link(positions: &[Point3<f64>], ends: [u32; 2]) -> Link {
