@@ -1,7 +1,9 @@
 //! Faces that are out of range, degenerate or duplicate.
 
+use std::collections::BTreeSet;
+
 use nalgebra::Point3;
-use surface::{CornerId, EdgeId, Topology, VertexId};
+use surface::{CornerId, EdgeId, FaceId, Topology, VertexId};
 
 use crate::error::MeshError;
 use crate::tri_mesh::TriMesh;
@@ -52,37 +54,34 @@ pub(crate) fn remove_degenerate(faces: &mut Vec<[VertexId; 3]>) -> usize {
     before - faces.len()
 }
 
-/// Whether two faces have the same three vertices: two corners opposite one edge are at the same vertex.
-pub(crate) fn has_duplicates(topology: &Topology) -> bool {
-    let apex = |corner: &CornerId| topology.corner_vertex(*corner);
-    (0..topology.n_edges()).any(|edge| match topology.edge_corners(EdgeId::from(edge)) {
-        [_] => false,
-        [a, b] => apex(a) == apex(b),
-        corners => {
-            let mut apices: Vec<VertexId> = corners.iter().map(apex).collect();
-            apices.sort_unstable();
-            apices.windows(2).any(|pair| pair[0] == pair[1])
-        }
-    })
-}
-
-/// Removes faces with the same vertices as an earlier one; returns how many.
-pub(crate) fn remove_duplicates(faces: &mut Vec<[VertexId; 3]>) -> usize {
-    let before = faces.len();
-    let mut duplicates = duplicates(faces).into_iter();
-    faces.retain(|_| !duplicates.next().unwrap_or(false));
-    before - faces.len()
-}
-
-/// For each face, whether an earlier one has the same three vertices in any order.
-fn duplicates(faces: &[[VertexId; 3]]) -> Vec<bool> {
-    let mut faces: Vec<_> = faces.iter().enumerate().map(|(f, face)| (VertexId::sorted(*face), f)).collect();
-    faces.sort_unstable();
-    let mut duplicate = vec![false; faces.len()];
-    for pair in faces.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
-        duplicate[pair[1].1] = true;
+/// The connectivity of faces that are not degenerate but for those with the same three vertices as an earlier one, and the
+/// number of these.
+pub(crate) fn without_duplicates(n_vertices: usize, faces: Vec<[VertexId; 3]>) -> (Topology, usize) {
+    let topology = Topology::new(n_vertices, faces);
+    let duplicates = duplicates(&topology);
+    if duplicates.is_empty() {
+        return (topology, 0);
     }
-    duplicate
+    let faces = topology.into_faces().into_iter().enumerate();
+    let kept = faces.filter(|(f, _)| !duplicates.contains(&FaceId::from(*f))).map(|(_, face)| face).collect();
+    (Topology::new(n_vertices, kept), duplicates.len())
+}
+
+/// The faces with the same three vertices as an earlier one: two corners opposite one edge are at the same vertex.
+fn duplicates(topology: &Topology) -> BTreeSet<FaceId> {
+    let apex = |corner: &CornerId| topology.corner_vertex(*corner);
+    let mut found = BTreeSet::new();
+    for corners in (0..topology.n_edges()).map(|edge| topology.edge_corners(EdgeId::from(edge))) {
+        match corners {
+            [_] => continue,
+            [a, b] if apex(a) != apex(b) => continue,
+            _ => {}
+        }
+        let mut faces: Vec<_> = corners.iter().map(|corner| (apex(corner), corner.face())).collect();
+        faces.sort_unstable();
+        found.extend(faces.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| pair[1].1));
+    }
+    found
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ use surface::{
 };
 
 use crate::error::MeshError;
-use crate::face_set::{check_input, has_duplicates, remove_degenerate, remove_duplicates};
+use crate::face_set::{check_input, remove_degenerate, without_duplicates};
 use crate::orientation::orient_consistently;
 use crate::points::triangulate_points;
 use crate::remap::Remap;
@@ -175,7 +175,7 @@ fn without_t_junctions(
             break;
         }
         report.t_junctions += n_joined;
-        surface = without_duplicates(mesh, std::mem::take(&mut faces), report);
+        surface = measured(mesh, std::mem::take(&mut faces), report);
     }
     Ok(surface)
 }
@@ -192,7 +192,7 @@ fn welded(
 ) -> Result<IntrinsicMesh, Exceeded> {
     let mut faces = mesh.faces.clone();
     report.degenerate_faces = remove_degenerate(&mut faces);
-    let mut surface = without_duplicates(mesh, faces, report);
+    let mut surface = measured(mesh, faces, report);
     for _ in 0..MAX_PASSES {
         budget.check()?;
         let n_merged =
@@ -205,7 +205,7 @@ fn welded(
         faces.iter_mut().flatten().for_each(|v| *v = VertexId(merged.find(v.0)));
         report.collapsed_vertices += collapsed;
         report.zero_length_faces += remove_degenerate(&mut faces);
-        surface = without_duplicates(mesh, faces, report);
+        surface = measured(mesh, faces, report);
     }
     Ok(surface)
 }
@@ -234,13 +234,9 @@ fn surface_of_points(
 }
 
 /// The surface of faces that are not degenerate, over the vertices of a mesh, without duplicate faces.
-fn without_duplicates(mesh: &TriMesh, faces: Vec<[VertexId; 3]>, report: &mut RepairReport) -> IntrinsicMesh {
-    let mut topology = Topology::new(mesh.n_vertices(), faces);
-    if has_duplicates(&topology) {
-        let mut faces = topology.into_faces();
-        report.duplicate_faces += remove_duplicates(&mut faces);
-        topology = Topology::new(mesh.n_vertices(), faces);
-    }
+fn measured(mesh: &TriMesh, faces: Vec<[VertexId; 3]>, report: &mut RepairReport) -> IntrinsicMesh {
+    let (topology, n_duplicates) = without_duplicates(mesh.n_vertices(), faces);
+    report.duplicate_faces += n_duplicates;
     mesh.measured(topology)
 }
 

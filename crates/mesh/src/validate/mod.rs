@@ -7,7 +7,7 @@ use serde::Serialize;
 use surface::{EdgeId, Topology, VertexId, components_of_faces};
 
 use crate::coincidence::coincident_pairs;
-use crate::face_set::{remove_degenerate, remove_duplicates};
+use crate::face_set::{remove_degenerate, without_duplicates};
 use crate::orientation::{Orientation, has_same_direction};
 use crate::tri_mesh::{TriMesh, bounds_of};
 
@@ -96,11 +96,10 @@ pub fn validate(mesh: &TriMesh) -> MeshReport {
     let size = bounds_of(corners).map_or(Vector3::zeros(), |[low, high]| high - low);
     let mut faces = mesh.faces.clone();
     let degenerate_faces = remove_degenerate(&mut faces);
-    let duplicate_faces = remove_duplicates(&mut faces);
     let mut referenced = vec![false; n_vertices];
     mesh.faces.iter().flatten().for_each(|v| referenced[v.index()] = true);
-    let n_faces = faces.len();
-    let topology = Topology::new(n_vertices, faces);
+    let (topology, duplicate_faces) = without_duplicates(n_vertices, faces);
+    let n_faces = topology.n_faces();
     let components = components_of_faces(topology.n_vertices(), topology.faces());
     let mut component_faces = vec![0; components.count];
     topology.faces().iter().filter_map(|f| components.of(f[0])).for_each(|c| component_faces[c] += 1);
