@@ -3,6 +3,7 @@
 use nalgebra::{Point3, Vector3};
 use surface::{Topology, VertexId};
 
+use crate::boundary::simple_boundaries;
 use crate::orientation::turned_faces;
 use crate::remap::Remapped;
 use crate::tri_mesh::TriMesh;
@@ -52,46 +53,24 @@ fn middle_within(mesh: &TriMesh, hole: &[VertexId], longest: f64) -> Option<Poin
     (length > 0.0 && length * unit <= longest).then(|| Point3::from(moment / length * unit))
 }
 
-/// The simple loops of edges with one face, each in the direction of its faces once they are oriented consistently, by their
-/// lowest vertex.
+/// The holes, each in the direction of the faces around it once they are oriented consistently.
 fn holes(mesh: &TriMesh, topology: &Topology) -> Vec<Vec<VertexId>> {
-    if topology.boundary_edges().next().is_none() {
-        return Vec::new();
+    let mut holes = simple_boundaries(topology);
+    if holes.is_empty() {
+        return holes;
     }
     let turned = turned_faces(&mesh.positions, topology);
-    let mut next = vec![None; mesh.n_vertices()];
-    let mut n_sides = vec![0; mesh.n_vertices()];
-    for edge in topology.boundary_edges() {
-        let corner = topology.edge_corners(edge)[0];
-        let mut ends = topology.edge_ends(corner);
-        if turned[corner.face().index()] {
-            ends.reverse();
+    let is_along = |side: [VertexId; 2]| {
+        let corner = topology.edge_corners(topology.edge_between(side[0], side[1])?)[0];
+        Some((topology.edge_ends(corner) == side) != turned[corner.face().index()])
+    };
+    holes.retain_mut(|hole| {
+        let along: Vec<_> = sides(hole).map(is_along).collect();
+        if along[0] == Some(false) {
+            hole[1..].reverse();
         }
-        let [a, b] = ends;
-        next[a.index()] = Some(b);
-        n_sides[a.index()] += 1;
-        n_sides[b.index()] += 1;
-    }
-    let mut is_seen = vec![false; mesh.n_vertices()];
-    let mut holes = Vec::new();
-    for first in (0..mesh.n_vertices()).map(VertexId::from) {
-        let mut hole = Vec::new();
-        let mut at = first;
-        let is_closed = loop {
-            if n_sides[at.index()] != 2 || is_seen[at.index()] {
-                break at == first && !hole.is_empty();
-            }
-            is_seen[at.index()] = true;
-            hole.push(at);
-            match next[at.index()] {
-                Some(after) => at = after,
-                None => break false,
-            }
-        };
-        if is_closed {
-            holes.push(hole);
-        }
-    }
+        along.iter().all(|other| *other == along[0])
+    });
     holes
 }
 

@@ -27,6 +27,7 @@
 //! # Ok::<(), canonform_mesh::MeshError>(())
 //! ```
 
+mod boundary;
 mod coincidence;
 mod collapse;
 mod error;

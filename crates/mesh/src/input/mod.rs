@@ -1,6 +1,5 @@
 //! The surface that a mesh becomes by its repair, and points in the numbers of the input.
 
-mod boundary;
 mod for_description;
 mod locate;
 mod point;

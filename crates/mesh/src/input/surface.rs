@@ -6,8 +6,8 @@ use ::surface::{IntrinsicMesh, Link, VertexId};
 use base::{Exceeded, Observer};
 use nalgebra::Point3;
 
-use super::boundary::boundaries;
 use super::point::{InputPoint, PointError};
+use crate::boundary::boundaries;
 use crate::remap::{Remap, Remapped};
 use crate::repair::FacePart;
 use crate::{MeshError, RepairOptions, RepairReport, Repaired, Shortcut, TriMesh, collapse_edges, repair};

@@ -1,9 +1,11 @@
 //! The triangles that points agree on.
 
-use std::collections::{HashMap, HashSet};
 use std::f64::consts::{PI, TAU};
 
+use surface::{Topology, VertexId};
+
 use super::star::{Proposal, Stars};
+use crate::boundary::simple_boundaries;
 
 /// Fewest points that propose a face.
 const FEWEST: usize = 2;
@@ -90,59 +92,18 @@ fn close_gaps(faces: &mut Vec<[u32; 3]>, sectors: &mut Sectors<'_>) {
 
 /// The corners of small gaps: a corner of the boundary with its two neighbors, and the length of the edge between these.
 fn ears(faces: &[[u32; 3]], stars: &Stars) -> Vec<(f64, [u32; 3])> {
-    let mut n_faces: HashMap<[u32; 2], u32> = HashMap::with_capacity(2 * faces.len());
-    for &[a, b, c] in faces {
-        // Corners ascend.
-        [[a, b], [b, c], [a, c]].into_iter().for_each(|edge| *n_faces.entry(edge).or_default() += 1);
-    }
-    let mut next: HashMap<u32, Vec<u32>> = HashMap::new();
-    for (&[a, b], _) in n_faces.iter().filter(|(_, n)| **n == 1) {
-        next.entry(a).or_default().push(b);
-        next.entry(b).or_default().push(a);
-    }
-    let length = |a: u32, b: u32| (stars.points[a as usize] - stars.points[b as usize]).norm();
-    let (mut ears, mut known) = (Vec::new(), HashSet::new());
-    for gap in gaps(&next) {
-        for i in 0..gap.len() {
-            let [a, b, c] = [gap[i], gap[(i + 1) % gap.len()], gap[(i + 2) % gap.len()]];
-            let mut ear = [a, b, c];
+    let faces = faces.iter().map(|face| face.map(VertexId)).collect();
+    let gaps = simple_boundaries(&Topology::new(stars.points.len(), faces));
+    let mut ears = Vec::new();
+    for gap in gaps.into_iter().filter(|gap| gap.len() <= MAX_GAP) {
+        // All corners of a triangle are the same ear.
+        let n_ears = if gap.len() == 3 { 1 } else { gap.len() };
+        for i in 0..n_ears {
+            let mut ear = [0, 1, 2].map(|k| gap[(i + k) % gap.len()].0);
+            let [a, _, c] = ear.map(|v| stars.points[v as usize]);
             ear.sort_unstable();
-            if known.insert(ear) {
-                ears.push((length(a, c), ear));
-            }
+            ears.push(((a - c).norm(), ear));
         }
     }
     ears
-}
-
-/// Closed boundaries with few sides, through vertices with two boundary edges.
-fn gaps(next: &HashMap<u32, Vec<u32>>) -> Vec<Vec<u32>> {
-    let mut starts: Vec<u32> = next.keys().copied().collect();
-    starts.sort_unstable();
-    let mut gaps = Vec::new();
-    for start in starts {
-        let mut gap = vec![start];
-        let (mut before, mut at) = (start, start);
-        while gap.len() <= MAX_GAP {
-            let ends = &next[&at];
-            let [a, b] = ends[..] else { break };
-            let step = if at == start {
-                a.min(b)
-            } else if a == before {
-                b
-            } else {
-                a
-            };
-            if step == start {
-                // Every gap is found from its lowest vertex only.
-                if gap.iter().all(|v| *v >= start) && gap.len() >= 3 {
-                    gaps.push(gap);
-                }
-                break;
-            }
-            gap.push(step);
-            (before, at) = (at, step);
-        }
-    }
-    gaps
 }

@@ -6,6 +6,7 @@ use nalgebra::Point3;
 use surface::{CornerId, EdgeId, Rows, Topology, VertexId};
 
 use super::weld::SEAM_TOLERANCE;
+use crate::boundary::neighbors;
 
 /// Rounding of coordinates, as a share of the farthest: many programs write six digits.
 const ROUNDING: f64 = 1e-5;
@@ -31,9 +32,7 @@ pub(super) fn close(
     if edges.is_empty() {
         return 0;
     }
-    let ends = edges.iter().map(|edge| topology.edges()[edge.index()]);
-    let both = ends.flat_map(|[a, b]| [(a.index(), b), (b.index(), a)]);
-    let boundary = Boundary { positions, gap, beside: Rows::collect(positions.len(), both) };
+    let boundary = Boundary { positions, gap, beside: neighbors(topology) };
     faces.clear();
     faces.extend(topology.faces());
     let mut n_joined = 0;

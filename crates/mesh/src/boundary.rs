@@ -1,0 +1,81 @@
+//! The boundary of a surface.
+
+use std::collections::BTreeMap;
+
+use surface::{DisjointSets, IntrinsicMesh, Rows, Topology, VertexId};
+
+/// The other ends of the boundary edges at every vertex.
+pub(crate) fn neighbors(topology: &Topology) -> Rows<VertexId> {
+    let edges: Vec<_> = topology.boundary_edges().map(|edge| topology.edges()[edge.index()]).collect();
+    let both = edges.iter().flat_map(|&[a, b]| [(a.index(), b), (b.index(), a)]);
+    Rows::collect(topology.n_vertices(), both)
+}
+
+/// The boundaries that touch neither themselves nor another one, by their lowest vertices. Each begins with it and goes on to
+/// the lower one of its neighbors.
+pub(crate) fn simple_boundaries(topology: &Topology) -> Vec<Vec<VertexId>> {
+    let neighbors = neighbors(topology);
+    let mut is_seen = vec![false; topology.n_vertices()];
+    let mut found = Vec::new();
+    for first in (0..topology.n_vertices()).map(VertexId::from) {
+        let mut boundary: Vec<VertexId> = Vec::new();
+        let mut at = first;
+        let is_closed = loop {
+            let [a, b] = *neighbors.row(at.index()) else { break false };
+            if std::mem::replace(&mut is_seen[at.index()], true) {
+                break at == first && !boundary.is_empty();
+            }
+            let before = boundary.last().copied();
+            boundary.push(at);
+            at = match before {
+                None => a.min(b),
+                Some(before) if a == before => b,
+                Some(_) => a,
+            };
+        };
+        if is_closed {
+            found.push(boundary);
+        }
+    }
+    found
+}
+
+/// The vertices of each boundary, and its length. Boundaries that touch count as one.
+pub(crate) fn boundaries(mesh: &IntrinsicMesh) -> Vec<(Vec<VertexId>, f64)> {
+    let topology = mesh.topology();
+    let mut joined = DisjointSets::new(mesh.n_vertices());
+    for edge in topology.boundary_edges() {
+        let [a, b] = topology.edges()[edge.index()];
+        joined.union(a.0, b.0);
+    }
+    let mut found: BTreeMap<u32, (Vec<VertexId>, f64)> = BTreeMap::new();
+    for edge in topology.boundary_edges() {
+        let ends = topology.edges()[edge.index()];
+        let (vertices, sum) = found.entry(joined.find(ends[0].0)).or_default();
+        vertices.extend(ends);
+        *sum += mesh.length(edge);
+    }
+    let mut found: Vec<_> = found.into_values().collect();
+    for (vertices, _) in &mut found {
+        vertices.sort_unstable();
+        vertices.dedup();
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Surface, shapes};
+
+    #[test]
+    fn boundaries_are_measured_one_by_one() {
+        let length = |mesh| Surface::new(&mesh, &Default::default(), &()).unwrap().longest_boundary();
+        assert_eq!(length(shapes::icosphere(2)), 0.0);
+        let (large, small) = (shapes::grid(11, 6, 0.1), shapes::grid(3, 3, 0.1));
+        assert!((length(large.clone()) - 3.0).abs() < 1e-9);
+        let bridged =
+            crate::RepairOptions { components: crate::ComponentPolicy::Bridge, ..Default::default() };
+        let two = Surface::new(&shapes::disjoint(&[large, small]), &bridged, &()).unwrap();
+        assert!((two.longest_boundary() - 3.0).abs() < 1e-9);
+    }
+}
