@@ -48,10 +48,7 @@ const STEPS: [f64; 2] = [0.5, -0.53];
 /// assert!((smooth.area() / sphere - 1.0).abs() < 0.02 && ball.area() > 1.05 * sphere);
 /// ```
 pub fn denoise(mesh: &TriMesh, topology: &Topology) -> Option<TriMesh> {
-    let (mut smooth, umbrellas) = prepared(mesh, topology);
-    if !umbrellas.bending(&smooth).is_noisy() || SmoothRegions::of(mesh).is_mechanical {
-        return None;
-    }
+    let (mut smooth, umbrellas) = noisy(mesh, topology)?;
     for _ in 0..MAX_PASSES {
         for step in [STEPS; ROUNDS].into_iter().flatten() {
             let offsets = umbrellas.offsets(&smooth, 1.0);
@@ -69,16 +66,17 @@ pub fn denoise(mesh: &TriMesh, topology: &Topology) -> Option<TriMesh> {
 /// # Panics
 /// If a face has a repeated vertex or one that does not exist, see [`Topology::new`].
 pub fn is_noisy(mesh: &TriMesh) -> bool {
-    let (oriented, umbrellas) = prepared(mesh, &mesh.topology());
-    umbrellas.bending(&oriented).is_noisy() && !SmoothRegions::of(mesh).is_mechanical
+    noisy(mesh, &mesh.topology()).is_some()
 }
 
-/// The mesh with its faces oriented consistently, and the neighbors of every vertex.
-fn prepared(mesh: &TriMesh, topology: &Topology) -> (TriMesh, Umbrellas) {
+/// A noisy mesh with its faces oriented consistently, and the neighbors of every vertex.
+fn noisy(mesh: &TriMesh, topology: &Topology) -> Option<(TriMesh, Umbrellas)> {
     let mut oriented = mesh.clone();
     let turned = turned_faces(&mesh.positions, topology);
     oriented.faces.iter_mut().zip(turned).filter(|(_, turned)| *turned).for_each(|(face, _)| face.swap(1, 2));
-    (oriented, Umbrellas::of(topology))
+    let umbrellas = Umbrellas::of(topology);
+    let is_noisy = umbrellas.bending(&oriented).is_noisy() && !SmoothRegions::of(mesh).is_mechanical;
+    is_noisy.then_some((oriented, umbrellas))
 }
 
 /// How a surface bends at its vertices. Vertices on edges that do not have two faces are left out.
