@@ -152,5 +152,23 @@ mod tests {
         assert_eq!(Orientation::of(&topology).orientable, [false]);
         let positions = (0..6).map(|i| nalgebra::Point3::new(f64::from(i), f64::from(i * i), 0.0)).collect();
         assert_eq!(oriented_faces(&TriMesh { positions, faces }), None);
+        // Fine ones, of which few edges are twisted, and a ring of the same vertices.
+        for (n_along, n_across) in [(400, 6), (90, 30)] {
+            let sheet = shapes::grid(n_along + 1, n_across, 1.0);
+            let glued = |is_twisted: bool| {
+                let mut mesh = sheet.clone();
+                let rows = |v: VertexId| [v.index() % (n_along + 1), v.index() / (n_along + 1)];
+                for v in mesh.faces.iter_mut().flatten() {
+                    let [x, y] = rows(*v);
+                    if x == n_along {
+                        let y = if is_twisted { n_across - 1 - y } else { y };
+                        *v = VertexId::from(y * (n_along + 1));
+                    }
+                }
+                mesh
+            };
+            assert_eq!(oriented_faces(&glued(true)), None, "{n_along} {n_across}");
+            assert_eq!(oriented_faces(&glued(false)), Some(glued(false).faces));
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Faces that all turn the same way, outwards if there is an outside.
 
 use nalgebra::Vector3;
-use surface::{EdgeId, Topology, VertexId};
+use surface::{DisjointSets, EdgeId, Topology, VertexId};
 
 use crate::orientation::{has_same_direction, orient_consistently};
 use crate::tri_mesh::TriMesh;
@@ -10,9 +10,10 @@ use crate::tri_mesh::TriMesh;
 /// sheet encloses none.
 const MIN_VOLUME: f64 = 0.02;
 
-/// Share of edges whose two faces may turn in opposite ways, as non-manifold edges of scans make them. A
-/// tolerance.
-const TOLERATED: f64 = 0.01;
+/// Edges in a row whose two faces turn in opposite ways, relative to the square root of the number of all edges with two faces,
+/// that defects of scans may have. A convention: the row across a band of evenly spread vertices is longer, unless the band is
+/// more than a hundred times as long as it is wide.
+const TOLERATED: f64 = 0.05;
 
 /// The signed volume of a mesh over that of a ball of the same area.
 fn volume(mesh: &TriMesh) -> f64 {
@@ -45,10 +46,19 @@ pub fn outward(mesh: &TriMesh) -> Option<TriMesh> {
 pub fn oriented_faces(mesh: &TriMesh) -> Option<Vec<[VertexId; 3]>> {
     let (mesh, _) = turned_alike(mesh);
     let topology = Topology::new(mesh.n_vertices(), mesh.faces);
-    let all = (0..topology.n_edges()).map(|e| topology.edge_corners(EdgeId::from(e)));
-    let inner = all.filter_map(|corners| <[_; 2]>::try_from(corners).ok());
-    let (n_twisted, n_inner) = inner.fold((0.0, 0.0), |(twisted, n), [a, b]| {
-        (twisted + f64::from(has_same_direction(&topology, a, b)), n + 1.0)
-    });
-    (n_twisted <= TOLERATED * n_inner).then(|| topology.faces().to_vec())
+    // Twisted edges, by an end, and the vertices that they join.
+    let (mut twisted, mut rows) = (Vec::new(), DisjointSets::new(topology.n_vertices()));
+    let mut n_inner = 0;
+    for (e, [a, b]) in topology.edges().iter().enumerate() {
+        let &[one, other] = topology.edge_corners(EdgeId::from(e)) else { continue };
+        n_inner += 1;
+        if has_same_direction(&topology, one, other) {
+            rows.union(a.0, b.0);
+            twisted.push(a.0);
+        }
+    }
+    let mut lengths = vec![0; topology.n_vertices()];
+    twisted.into_iter().for_each(|v| lengths[rows.find(v) as usize] += 1);
+    let longest = lengths.into_iter().max().unwrap_or(0);
+    (f64::from(longest) <= TOLERATED * f64::from(n_inner).sqrt()).then(|| topology.into_faces())
 }
