@@ -27,10 +27,6 @@ pub(crate) struct Polygons {
 }
 
 impl Polygons {
-    pub(crate) fn with_room_for(n_faces: usize) -> Self {
-        Self { faces: Vec::with_capacity(n_faces), ..Self::default() }
-    }
-
     /// Triangulates a polygon whose corners are in range. Every corner becomes a corner of a triangle, and no vertex is added.
     ///
     /// A quadrilateral is split along the diagonal that folds neither half over, else along the shorter one. Larger polygons

@@ -33,7 +33,7 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
     let mut rest = corners.get(n_vertices..).unwrap_or_default();
     // No arities mean triangles.
     let arities = mesh.face_arities.iter().skip(1).copied().chain(std::iter::repeat(3));
-    let mut polygons = Polygons::with_room_for(statements.starts.len() - n_vertices);
+    let mut polygons = Polygons::default();
     for (line, arity) in statements.lines(b'f').zip(arities) {
         let Some((polygon, others)) = rest.split_at_checked(arity as usize) else { break };
         polygons.push(&positions, polygon, limits).in_line(line)?;

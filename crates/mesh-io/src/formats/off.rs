@@ -2,10 +2,6 @@
 
 use crate::prelude::*;
 
-/// The fewest bytes of a vertex, `0 0 0` and a line end, and of a face, `3 0 1 2` and a line end.
-const SHORTEST_VERTEX: usize = 6;
-const SHORTEST_FACE: usize = 8;
-
 /// Checks the keyword, and that text follows.
 pub(super) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
     check_is_not_utf16(start)?;
@@ -49,15 +45,12 @@ fn parse_words(bytes: &[u8], crosses_lines: bool, limits: &ReadLimits) -> Result
     let truncated = |words: &Words<'_>, items: &str, promised, found| {
         Fault::truncated(items, promised, found).in_line(words.lines.number)
     };
-    let room = words.lines.remaining() / SHORTEST_VERTEX;
-    let mut positions = Vec::with_capacity(room.min(n_vertices as usize));
+    let mut positions = Vec::new();
     for found in 0..n_vertices {
         let line = words.row().ok_or_else(|| truncated(&words, "vertices", n_vertices, found))?;
         positions.push(parse_position(line, &mut words, found as usize)?);
     }
-    let room = words.lines.remaining() / SHORTEST_FACE;
-    let mut polygons = Polygons::with_room_for(room.min(n_faces as usize));
-    let mut corners = Vec::new();
+    let (mut polygons, mut corners) = (Polygons::default(), Vec::new());
     for found in 0..n_faces {
         let line = words.row().ok_or_else(|| truncated(&words, "faces", n_faces, found))?;
         let expected = "a number of corners and that many vertices";

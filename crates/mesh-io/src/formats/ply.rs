@@ -36,11 +36,6 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
     let (mut corners, mut values) = (Vec::new(), Vec::new());
     for element in &header.elements {
         let (is_vertex, is_face) = (element.name == "vertex", element.name == "face");
-        match element.count as usize {
-            n_vertices if is_vertex => positions.reserve_exact(n_vertices),
-            n_faces if is_face => polygons = Polygons::with_room_for(n_faces),
-            _ => {}
-        }
         let n_vertices = positions.len() as f64;
         for row in 0..element.count {
             let (mut p, mut outside) = (Point3::origin(), None);
