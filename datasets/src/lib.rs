@@ -48,7 +48,7 @@ pub use articulated::{
     articulated_body, articulated_shape,
 };
 pub use creature::{CreatureOptions, creature_body, creature_family, creature_plans, creatures};
-pub use damage::{Damage, DamageKind, WeldPair};
+pub use damage::{Damage, WeldPair};
 pub use error::DatasetError;
 pub use parts::{Diagonals, MechanicalPart, PartFamily, PartMesh, mechanical_parts};
 pub use scan::{ScannedPoint, scan};

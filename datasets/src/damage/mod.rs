@@ -4,7 +4,6 @@
 
 mod cut_off;
 mod holes;
-mod kind;
 mod noise;
 mod remesh;
 mod slice;
@@ -18,7 +17,6 @@ use nalgebra::{Matrix3, Point3};
 use self::remesh::{decimated, remeshed};
 use crate::stream::{Purpose, Stream};
 
-pub use kind::DamageKind;
 pub use weld::WeldPair;
 
 /// A change of a mesh that leaves the shape recognizable.
@@ -60,6 +58,32 @@ pub enum Damage {
 }
 
 impl Damage {
+    /// Kinds of damage by name, each in five strengths: those of the SHREC'10 benchmark on robustness, and welds drawn in two
+    /// ways. Strength 3 is damage that scans really have, and 5 is hard.
+    ///
+    /// ```
+    /// use canonform_datasets::Damage;
+    ///
+    /// let (name, strengths) = Damage::graded()[3];
+    /// assert_eq!((name, strengths[2].to_string().as_str()), ("holes", "holes 3 %"));
+    /// ```
+    pub fn graded() -> [(&'static str, [Self; 5]); 11] {
+        let counts = [1, 2, 3, 4, 5];
+        [
+            ("weld, near points", counts.map(|n| Self::Weld(WeldPair::Near, n))),
+            ("weld, random points", counts.map(|n| Self::Weld(WeldPair::Random, n))),
+            ("handle, near points", counts.map(Self::Contact)),
+            ("holes", [0.01, 0.02, 0.03, 0.05, 0.08].map(Self::Holes)),
+            ("cut off", [0.02, 0.04, 0.07, 0.11, 0.16].map(Self::CutOff)),
+            ("noise", [0.001, 0.002, 0.003, 0.005, 0.008].map(Self::Noise)),
+            ("shot noise", [0.002, 0.005, 0.01, 0.02, 0.04].map(Self::ShotNoise)),
+            ("decimation", [0.7, 0.5, 0.35, 0.2, 0.1].map(Self::Decimate)),
+            ("sampling", [1.0, 0.7, 0.5, 0.35, 0.2].map(Self::Sample)),
+            ("scale", [1.25, 2.0, 4.0, 10.0, 25.4].map(Self::Resize)),
+            ("mirror", [Self::Mirror; 5]),
+        ]
+    }
+
     /// Applies the damage. The same mesh and seed give the same bytes on any machine.
     pub fn apply(self, mesh: &TriMesh, seed: u64) -> TriMesh {
         let mut stream = Stream::new(seed, 0, 0, Purpose::Damage);
@@ -151,7 +175,7 @@ mod tests {
     /// One strength of every kind, and what is not graded.
     fn all() -> impl Iterator<Item = Damage> {
         let others = [Damage::Slice(0.7), Damage::Subdivide(1), Damage::Subdivide(2), Damage::Remesh];
-        let graded = DamageKind::ALL.iter().map(|kind| kind.at(2));
+        let graded = Damage::graded().into_iter().map(|(_, strengths)| strengths[1]);
         graded.chain(others).chain([Damage::Decimate(0.2), Damage::Move, Damage::Scale])
     }
 

@@ -9,7 +9,7 @@ use anyhow::{Context as _, Result};
 use canonform::describe;
 use canonform::embed::signature;
 use canonform::index::Shape;
-use datasets::DamageKind;
+use datasets::Damage;
 use descriptors::{ShapeMetric, SignatureKind};
 use report::Record;
 use report::record::{Axis, SeriesKind};
@@ -39,16 +39,16 @@ pub(crate) fn robustness(context: &Context<'_>) -> Result<Record> {
     record("undamaged", &undamaged, &mut measured);
     let mut panels = Panels::default();
     let mut least = f64::INFINITY;
-    for &kind in DamageKind::ALL {
+    for (kind, strengths) in Damage::graded() {
         draw(kind, 0, &undamaged, &mut panels);
-        for strength in 1..=DamageKind::STRENGTHS {
-            let stage = format!("{} {strength}", kind.name());
+        for (strength, damage) in (1..).zip(strengths) {
+            let stage = format!("{kind} {strength}");
             let found = gallery.map(context.options.queries, &stage, |query| {
-                let damaged = describe(&query.damaged(kind.at(strength))?, &gallery.options, &())?;
+                let damaged = describe(&query.damaged(damage)?, &gallery.options, &())?;
                 Ok((scores(&gallery, query, &damaged)?, damaged.entry.facts.shortcuts))
             })?;
             let (found, cut): (Vec<_>, Vec<_>) = found.into_iter().unzip();
-            if matches!(kind, DamageKind::Weld | DamageKind::FarWeld | DamageKind::Contact) {
+            if matches!(damage, Damage::Weld(..) | Damage::Contact(_)) {
                 let cut = mean(cut.into_iter().map(|cut| cut as f64 / strength as f64));
                 measured.insert(format!("{stage} cut"), cut);
             }
@@ -93,10 +93,10 @@ fn record(stage: &str, found: &MethodScores, measured: &mut MeasuredNumbers) {
 }
 
 /// Adds to the panels of a kind: nearest neighbors, and mean average precision.
-fn draw(kind: DamageKind, strength: usize, found: &MethodScores, panels: &mut Panels) {
+fn draw(kind: &str, strength: usize, found: &MethodScores, panels: &mut Panels) {
     for (method, scores) in found {
         for (name, score) in ["NN", "mAP"].into_iter().zip(scores) {
-            let (title, axes) = (format!("{}: {name}", kind.name()), ["strength", name].map(Axis::linear));
+            let (title, axes) = (format!("{kind}: {name}"), ["strength", name].map(Axis::linear));
             panels.add(&title, axes, (method, SeriesKind::Curve), point(strength as f64, &[*score]));
         }
     }
