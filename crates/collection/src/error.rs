@@ -1,5 +1,6 @@
 //! Errors of this crate.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use base::files::FileError;
@@ -72,15 +73,23 @@ pub enum CollectionError {
     },
     /// A folder, an archive or a list without meshes.
     #[error(
-        "{path}: no mesh found in it or its sub-folders; \
+        "{path}: no mesh found in it or its sub-folders{}; \
          a mesh is {meshes}",
+        skipping(skipped),
         path = path.display(),
         meshes = mesh_io::mesh_files()
     )]
     NoShapes {
         /// The folder.
         path: PathBuf,
+        /// How much was skipped although it may hold meshes, by the reason.
+        skipped: BTreeMap<String, usize>,
     },
+}
+
+fn skipping(counts: &BTreeMap<String, usize>) -> String {
+    let counts: Vec<String> = counts.iter().map(|(kind, n)| format!("{kind} ({n})")).collect();
+    if counts.is_empty() { String::new() } else { format!(", skipping {}", counts.join(", ")) }
 }
 
 fn such_as(names: &[String]) -> String {

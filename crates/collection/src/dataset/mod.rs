@@ -64,7 +64,11 @@ impl Dataset {
         };
         let mut shapes = found.shapes;
         if shapes.is_empty() {
-            return Err(CollectionError::NoShapes { path: path.to_owned() });
+            let unexpected = found.skipped.iter().filter(|skipped| !skipped.kind.is_expected());
+            return Err(CollectionError::NoShapes {
+                path: path.to_owned(),
+                skipped: count_skipped(unexpected),
+            });
         }
         for shape in &mut shapes {
             let below = shape.path.strip_prefix(&found.root).unwrap_or(&shape.path);
@@ -100,9 +104,13 @@ impl Found {
                 continue;
             }
             match Self::in_archive(&path) {
-                // What else is in an archive without meshes is no concern of theirs.
-                Ok(found) if found.shapes.is_empty() => {
-                    skipped.push(Skipped { kind: SkipKind::Extension(extension(&path)), path });
+                // Of an archive without meshes, only archives in it may matter.
+                Ok(mut found) if found.shapes.is_empty() => {
+                    found.skipped.retain(|skipped| matches!(skipped.kind, SkipKind::UnreadArchive(_)));
+                    if found.skipped.is_empty() {
+                        skipped.push(Skipped { kind: SkipKind::Extension(extension(&path)), path });
+                    }
+                    skipped.extend(found.skipped);
                 }
                 Ok(found) => {
                     shapes.extend(found.shapes);
@@ -167,9 +175,9 @@ fn common_folder(shapes: &[ShapeFile], otherwise: &Path) -> PathBuf {
 }
 
 /// How many things were skipped for each reason.
-pub fn count_skipped(skipped: &[Skipped]) -> BTreeMap<String, usize> {
+pub fn count_skipped<'a>(skipped: impl IntoIterator<Item = &'a Skipped>) -> BTreeMap<String, usize> {
     let mut counts = BTreeMap::new();
-    skipped.iter().for_each(|skipped| *counts.entry(skipped.kind.to_string()).or_insert(0) += 1);
+    skipped.into_iter().for_each(|skipped| *counts.entry(skipped.kind.to_string()).or_insert(0) += 1);
     counts
 }
 

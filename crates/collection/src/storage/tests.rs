@@ -100,9 +100,10 @@ fn archives_in_folders_are_looked_into_or_listed() {
     let inner = zip_of(&[("b.off", off.clone())]);
     for (name, bytes) in [
         ("a.off", off.clone()),
-        ("all.zip", zip_of(&[("in/b.off", off.clone()), ("deep.zip", inner)])),
+        ("all.zip", zip_of(&[("in/b.off", off.clone()), ("deep.zip", inner.clone())])),
         ("old.tar", tar_of(&[("c.off", off.clone())])),
         ("pictures.zip", zip_of(&[("x.jpg", vec![1])])),
+        ("nested.zip", zip_of(&[("x.jpg", vec![1]), ("inner.zip", inner.clone())])),
         ("damaged.zip", b"PK".to_vec()),
         ("packed.tar.gz", gzip_of(&tar_of(&[("d.off", off)]))),
         ("other.7z", b"7z".to_vec()),
@@ -116,8 +117,12 @@ fn archives_in_folders_are_looked_into_or_listed() {
         found.skipped.iter().filter(|it| !it.kind.is_expected()).map(|it| it.path.clone()).collect();
     assert_eq!(
         unread,
-        ["all.zip/deep.zip", "damaged.zip", "other.7z", "packed.tar.gz"].map(|name| folder.path().join(name))
+        ["all.zip/deep.zip", "damaged.zip", "nested.zip/inner.zip", "other.7z", "packed.tar.gz"]
+            .map(|name| folder.path().join(name))
     );
+    let error = Dataset::read(&folder.path().join("nested.zip"), None).unwrap_err().to_string();
+    let expected = "sub-folders, skipping .zip archive that is not looked into (1); a mesh is a .off";
+    assert!(error.contains(expected), "{error}");
 }
 
 #[test]
