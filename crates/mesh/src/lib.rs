@@ -28,6 +28,7 @@
 //! ```
 
 mod boundary;
+mod box_tree;
 mod coincidence;
 mod collapse;
 mod error;

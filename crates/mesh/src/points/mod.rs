@@ -4,7 +4,6 @@
 //! plane ([`star`]), and triangles that points agree on become the surface ([`select`]).
 
 mod fit;
-mod neighbors;
 mod select;
 mod smooth;
 mod star;
@@ -14,12 +13,12 @@ use nalgebra::Point3;
 use serde::Serialize;
 use surface::VertexId;
 
+use crate::box_tree::BoxTree;
 use crate::coincidence::coincident_pairs;
 use crate::error::{MIN_POINTS, MeshError};
 use crate::face_set::check_finite;
 use crate::orientation::orient_consistently;
 use crate::tri_mesh::TriMesh;
-use neighbors::Neighbors;
 
 /// The surface of a point cloud.
 #[derive(Debug, Clone, PartialEq)]
@@ -118,8 +117,7 @@ pub fn triangulate_points(
     }
     let smooth = smooth::smooth(distinct.iter().map(|&i| scaled[i]).collect(), &budget)?;
     budget.check()?;
-    let neighbors = Neighbors::new(&smooth.points);
-    let stars = star::stars(&smooth.points, &neighbors);
+    let stars = star::stars(&smooth.points);
     budget.check()?;
     let faces = select::agreed(&stars);
     if faces.is_empty() {
@@ -168,17 +166,16 @@ fn stand_ins(faces: &[[u32; 3]], points: &[Point3<f64>], spacing: f64) -> Vec<Op
     const FARTHEST: f64 = 4.0;
     let mut is_used = vec![false; points.len()];
     faces.iter().flatten().for_each(|&v| is_used[v as usize] = true);
-    let used: Vec<u32> = (0..points.len() as u32).filter(|&v| is_used[v as usize]).collect();
-    let positions: Vec<Point3<f64>> = used.iter().map(|&v| points[v as usize]).collect();
-    let near = Neighbors::new(&positions);
+    let used = points.iter().copied().zip(0..).filter(|(_, v)| is_used[*v as usize]);
+    let near = BoxTree::new(used);
     (0..points.len())
         .map(|i| match is_used[i] {
             true => Some(i as u32),
             false => near
                 .nearest(&points[i], 1)
                 .first()
-                .filter(|(_, sq)| *sq <= (FARTHEST * spacing).powi(2))
-                .map(|(v, _)| used[*v as usize]),
+                .filter(|(sq, _)| *sq <= (FARTHEST * spacing).powi(2))
+                .map(|(_, v)| *v),
         })
         .collect()
 }

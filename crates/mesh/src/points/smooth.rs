@@ -5,7 +5,7 @@ use nalgebra::Point3;
 use rayon::prelude::*;
 
 use super::fit::patch;
-use super::neighbors::Neighbors;
+use crate::box_tree::BoxTree;
 
 /// Points of the patches that tell whether there is noise.
 const FEW: usize = 12;
@@ -70,7 +70,7 @@ impl Smooth {
 /// them, and flat parts have large ones, over which more noise is averaged. Patches of neighbors of different sizes leave
 /// the result uneven, so smoothed points are projected again, onto small patches of each other.
 pub(super) fn smooth(points: Vec<Point3<f64>>, budget: &Budget) -> Result<Smooth, Exceeded> {
-    let neighbors = Neighbors::new(&points);
+    let neighbors = BoxTree::new(points.iter().copied().zip(0..));
     let at = probes(&points);
     let [noise, _, spacing] = residuals(&points, &neighbors, &at, FEW, 0.5);
     let mut smooth = Smooth { spacing, noise, neighbors: 0, points };
@@ -90,7 +90,7 @@ pub(super) fn smooth(points: Vec<Point3<f64>>, budget: &Budget) -> Result<Smooth
     let evening = (EVENING * smooth.noise / smooth.spacing) as usize;
     for _ in 0..evening.min(EVENING_ROUNDS) {
         budget.check()?;
-        let near = Neighbors::new(&smooth.points);
+        let near = BoxTree::new(smooth.points.iter().copied().zip(0..));
         let project = |p: &Point3<f64>| foot(p, &near, &smooth.points, smooth.neighbors);
         smooth.points = smooth.points.par_iter().map(project).collect();
     }
@@ -98,21 +98,21 @@ pub(super) fn smooth(points: Vec<Point3<f64>>, budget: &Budget) -> Result<Smooth
 }
 
 /// A place, projected onto the patch of this many points around it.
-fn foot(place: &Point3<f64>, neighbors: &Neighbors, points: &[Point3<f64>], size: usize) -> Point3<f64> {
+fn foot(place: &Point3<f64>, neighbors: &BoxTree, points: &[Point3<f64>], size: usize) -> Point3<f64> {
     patch(place, &nearest(place, neighbors, points, size)).map_or(*place, |(foot, _)| foot)
 }
 
 fn nearest(
     place: &Point3<f64>,
-    neighbors: &Neighbors,
+    neighbors: &BoxTree,
     points: &[Point3<f64>],
     size: usize,
 ) -> Vec<Point3<f64>> {
-    neighbors.nearest(place, size).iter().map(|(i, _)| points[*i as usize]).collect()
+    neighbors.nearest(place, size).iter().map(|(_, i)| points[*i as usize]).collect()
 }
 
 /// For every point, the number of points of the largest patch that fits.
-fn sizes(rough: &Smooth, neighbors: &Neighbors) -> Vec<usize> {
+fn sizes(rough: &Smooth, neighbors: &BoxTree) -> Vec<usize> {
     let most = rough.in_disc(FARTHEST).min(rough.points.len() / 8);
     let tried: Vec<usize> = (0..=STEPS)
         .map(|step| (rough.neighbors as f64 * STEP.powi(step as i32)) as usize)
@@ -143,7 +143,7 @@ fn probes(points: &[Point3<f64>]) -> Vec<Point3<f64>> {
 /// radius of the patches, and the distance between points if the disc of a patch is shared evenly.
 fn residuals(
     points: &[Point3<f64>],
-    neighbors: &Neighbors,
+    neighbors: &BoxTree,
     probes: &[Point3<f64>],
     size: usize,
     share: f64,
@@ -160,7 +160,7 @@ fn residuals(
 
 /// The noise and the spacing of points: those of the smallest patches of which a quarter are flat. Where the surface is
 /// more curved, points stick out of large patches without noise.
-fn measure(points: &[Point3<f64>], neighbors: &Neighbors, probes: &[Point3<f64>]) -> (f64, f64) {
+fn measure(points: &[Point3<f64>], neighbors: &BoxTree, probes: &[Point3<f64>]) -> (f64, f64) {
     let largest = SIZES.iter().rposition(|size| *size <= points.len() / 8).unwrap_or(0);
     let mut measured = (0.0, 0.0);
     for &size in &SIZES[..=largest] {

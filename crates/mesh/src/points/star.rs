@@ -4,7 +4,7 @@ use nalgebra::Point3;
 use rayon::prelude::*;
 
 use super::fit::Frame;
-use super::neighbors::Neighbors;
+use crate::box_tree::BoxTree;
 
 /// Neighbors whose plane is the tangent plane.
 const TANGENT: usize = 16;
@@ -39,21 +39,22 @@ impl Stars {
 }
 
 /// The stars of all points.
-pub(super) fn stars(points: &[Point3<f64>], neighbors: &Neighbors) -> Stars {
-    let near: Vec<Vec<(u32, f64)>> = points.par_iter().map(|p| neighbors.nearest(p, NEAR + 1)).collect();
+pub(super) fn stars(points: &[Point3<f64>]) -> Stars {
+    let tree = BoxTree::new(points.iter().copied().zip(0..));
+    let near: Vec<Vec<(f64, u32)>> = points.par_iter().map(|p| tree.nearest(p, NEAR + 1)).collect();
     let frames: Vec<Frame> = near
         .par_iter()
         .map(|near| {
             let around: Vec<(Point3<f64>, f64)> =
-                near.iter().take(TANGENT + 1).map(|(i, _)| (points[*i as usize], 1.0)).collect();
+                near.iter().take(TANGENT + 1).map(|(_, i)| (points[*i as usize], 1.0)).collect();
             Frame::of(&around)
         })
         .collect();
     let star = |center: usize| {
-        let reach = near[center].last().map_or(0.0, |(_, sq)| sq.sqrt());
+        let reach = near[center].last().map_or(0.0, |(sq, _)| sq.sqrt());
         let frame = &frames[center];
         let mut seen: Vec<(u32, [f64; 2])> = Vec::with_capacity(NEAR);
-        for &(i, sq) in &near[center] {
+        for &(sq, i) in &near[center] {
             let length = sq.sqrt();
             if i as usize == center || frames[i as usize].normal.dot(&frame.normal).abs() < ALIKE {
                 continue;

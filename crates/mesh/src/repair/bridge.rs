@@ -12,7 +12,7 @@ use base::{Budget, Exceeded};
 use nalgebra::Point3;
 use surface::{DisjointSets, Link, Topology, VertexId};
 
-use super::box_tree::BoxTree;
+use crate::box_tree::BoxTree;
 use crate::coincidence::coincident_pairs;
 
 /// The group of a node with points of several groups.
@@ -151,7 +151,7 @@ impl GroupTree {
     fn nearest_outside(&self, at: &Point3<f64>, own: u32, sq_radius: f64, found: &mut Vec<(f64, u32)>) {
         let skips = |other: u32| self.groups[other as usize] == own;
         let prunes = |node: usize| self.node_groups[node] == own;
-        self.boxes.nearest(at, sq_radius, 1, skips, prunes, found);
+        self.boxes.nearest_within(at, sq_radius, 1, skips, prunes, found);
     }
 
     /// The shortest link from every group to another.

@@ -1,6 +1,5 @@
 //! Repair of defects that algorithms cannot handle.
 
-mod box_tree;
 mod bridge;
 mod options;
 mod report;

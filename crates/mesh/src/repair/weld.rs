@@ -5,9 +5,9 @@ use std::collections::HashMap;
 use nalgebra::{Point3, center};
 use surface::{DisjointSets, EdgeId, IntrinsicMesh, Topology, VertexId};
 
-use super::box_tree::BoxTree;
 use super::options::Weld;
 use super::report::RepairReport;
+use crate::box_tree::BoxTree;
 use crate::coincidence::coincident_pairs;
 
 /// Two boundary edges are the two sides of a seam if their ends are no farther apart than this share of the shortest
@@ -71,7 +71,7 @@ fn vertex_pairs(positions: &[Point3<f64>], boundary: &[u32], tolerance: f64) -> 
     let (mut pairs, mut found) = (Vec::new(), Vec::new());
     for &v in boundary {
         let at = &positions[v as usize];
-        tree.nearest(at, tolerance * tolerance, CANDIDATES, |other| other == v, |_| false, &mut found);
+        tree.nearest_within(at, tolerance * tolerance, CANDIDATES, |other| other == v, |_| false, &mut found);
         pairs.extend(found.iter().map(|&(sq, other)| Pair::new([v, other], sq.sqrt(), tolerance)));
     }
     pairs
@@ -96,7 +96,7 @@ fn seam_pairs(positions: &[Point3<f64>], topology: &Topology, edges: &[EdgeId]) 
     let (mut pairs, mut found) = (Vec::new(), Vec::new());
     for i in 0..edges.len() as u32 {
         let sq_tolerance = tolerances[i as usize] * tolerances[i as usize];
-        tree.nearest(&middle(i), sq_tolerance, CANDIDATES, |j| j == i, |_| false, &mut found);
+        tree.nearest_within(&middle(i), sq_tolerance, CANDIDATES, |j| j == i, |_| false, &mut found);
         for &(_, j) in &found {
             // Two faces over the same vertex would become one.
             if apex(i) == apex(j) {

@@ -8,24 +8,24 @@ use nalgebra::{Point3, Vector3};
 const LEAF: usize = 8;
 
 /// A tree of bounding boxes in one array, parents before their children.
-pub(super) struct BoxTree {
+pub(crate) struct BoxTree {
     /// Points and their numbers.
-    pub(super) items: Vec<(Point3<f64>, u32)>,
-    pub(super) nodes: Vec<Node>,
+    pub(crate) items: Vec<(Point3<f64>, u32)>,
+    pub(crate) nodes: Vec<Node>,
 }
 
 #[derive(Debug, Clone)]
-pub(super) struct Node {
+pub(crate) struct Node {
     low: Point3<f64>,
     high: Point3<f64>,
-    pub(super) items: Range<usize>,
+    pub(crate) items: Range<usize>,
     /// The two children; `None` for a leaf.
-    pub(super) children: Option<[usize; 2]>,
+    pub(crate) children: Option<[usize; 2]>,
 }
 
 impl BoxTree {
     /// The tree over points, each with a number. `O(n log n)`.
-    pub(super) fn new(points: impl Iterator<Item = (Point3<f64>, u32)>) -> Self {
+    pub(crate) fn new(points: impl Iterator<Item = (Point3<f64>, u32)>) -> Self {
         let mut tree = Self { items: points.collect(), nodes: Vec::new() };
         tree.grow(0..tree.items.len());
         tree
@@ -51,9 +51,16 @@ impl BoxTree {
         index
     }
 
+    /// The `k` points nearest to a position, or all if there are fewer, as squared distances and numbers in ascending order.
+    pub(crate) fn nearest(&self, at: &Point3<f64>, k: usize) -> Vec<(f64, u32)> {
+        let mut found = Vec::with_capacity(k);
+        self.nearest_within(at, f64::INFINITY, k, |_| false, |_| false, &mut found);
+        found
+    }
+
     /// Replaces `found` by the `k` points nearest to a position within a radius, which is squared, as squared distances and
     /// numbers in ascending order. `skips` excludes points, `prunes` nodes by their index.
-    pub(super) fn nearest(
+    pub(crate) fn nearest_within(
         &self,
         at: &Point3<f64>,
         sq_radius: f64,
