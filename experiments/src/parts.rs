@@ -40,7 +40,7 @@ pub(crate) fn parts(seed: u64, n_parts: usize, n_copies: usize) -> Vec<LabeledSh
 }
 
 fn in_inches(mesh: &TriMesh) -> TriMesh {
-    TriMesh { positions: mesh.positions.iter().map(|p| p / 25.4).collect(), faces: mesh.faces.clone() }
+    mesh.moved(|p| p / 25.4)
 }
 
 /// Rounded to 32 bits, with vertices and faces in another order.

@@ -19,9 +19,7 @@ const TOLERATED: f64 = 0.05;
 fn volume(mesh: &TriMesh) -> f64 {
     let sum: Vector3<f64> = mesh.positions.iter().map(|p| p.coords).sum();
     let center = sum / mesh.n_vertices().max(1) as f64;
-    let positions = mesh.positions.iter().map(|p| p - center).collect();
-    let volume = TriMesh { positions, faces: mesh.faces.clone() }.signed_volume();
-    volume / (mesh.area().powf(1.5) / (6.0 * std::f64::consts::PI.sqrt()))
+    mesh.moved(|p| p - center).signed_volume() / (mesh.area().powf(1.5) / (6.0 * std::f64::consts::PI.sqrt()))
 }
 
 /// The mesh with its faces turned alike.

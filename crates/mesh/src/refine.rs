@@ -27,13 +27,9 @@ const FLAT: f64 = 1e-5;
 pub fn refine(mesh: &TriMesh, longest: f64, most: usize) -> Remapped {
     // Coordinates in this unit, a power of two, are exact, and their products do not overflow.
     let unit = mesh.unit();
-    let in_units = |mesh: &TriMesh, unit: f64| TriMesh {
-        positions: mesh.positions.iter().map(|p| p / unit).collect(),
-        faces: mesh.faces.clone(),
-    };
-    let mut splits = Splits::new(in_units(mesh, unit));
+    let mut splits = Splits::new(mesh.moved(|p| p / unit));
     splits.split_longer_than(longest / unit, most);
-    let mut refined = in_units(&splits.mesh, 1.0 / unit);
+    let mut refined = splits.mesh.moved(|p| p * unit);
     refined.positions[..mesh.n_vertices()].clone_from_slice(&mesh.positions);
     Remapped::extended(refined, splits.origins)
 }

@@ -146,8 +146,7 @@ impl SmoothRegions {
     pub fn of(mesh: &TriMesh) -> Self {
         // Products of lengths neither overflow nor vanish near the unit.
         let unit = mesh.unit();
-        let positions = mesh.positions.iter().map(|p| p / unit).collect();
-        let mut found = Self::near_unit(&TriMesh { positions, faces: mesh.faces.clone() });
+        let mut found = Self::near_unit(&mesh.moved(|p| p / unit));
         found.chord_errors.iter_mut().for_each(|error| *error *= unit);
         for region in &mut found.all {
             match &mut region.shape {

@@ -44,6 +44,11 @@ impl TriMesh {
         self.faces[face].map(|v| self.positions[v.index()])
     }
 
+    /// The mesh with every vertex where a map takes it.
+    pub fn moved(&self, map: impl FnMut(&Point3<f64>) -> Point3<f64>) -> Self {
+        Self { positions: self.positions.iter().map(map).collect(), faces: self.faces.clone() }
+    }
+
     /// The edges, for shortest paths along them; inner ones come twice.
     pub fn edge_graph(&self) -> EdgeGraph {
         let sides = self.faces.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);

@@ -12,7 +12,7 @@ mod weld;
 use std::fmt;
 
 use mesh::{TriMesh, shapes};
-use nalgebra::{Matrix3, Point3};
+use nalgebra::Matrix3;
 
 use self::remesh::{decimated, remeshed};
 use crate::stream::{Purpose, Stream};
@@ -101,17 +101,17 @@ impl Damage {
             Self::Holes(share) => holes::holes(mesh, share, &mut stream),
             Self::Move => {
                 let (turn, shift) = (stream.rotation(), diagonal(mesh));
-                transformed(mesh, |p| turn * p + nalgebra::Vector3::new(shift, -shift, shift))
+                mesh.moved(|p| turn * p + nalgebra::Vector3::new(shift, -shift, shift))
             }
             Self::Scale => {
                 // Evenly spread in powers of two and fractions between them.
                 let factor = f64::powi(2.0, stream.below(6) as i32 - 3) * stream.uniform(0.8, 1.25);
-                transformed(mesh, |p| p * factor)
+                mesh.moved(|p| p * factor)
             }
-            Self::Resize(factor) => transformed(mesh, |p| p * factor),
+            Self::Resize(factor) => mesh.moved(|p| p * factor),
             Self::Mirror => {
                 let flip = Matrix3::from_diagonal(&[-1.0, 1.0, 1.0].into());
-                let mut mirrored = transformed(mesh, |p| flip * p);
+                let mut mirrored = mesh.moved(|p| flip * p);
                 mirrored.faces.iter_mut().for_each(|face| face.swap(0, 1));
                 mirrored
             }
@@ -154,10 +154,6 @@ impl fmt::Display for Damage {
 /// In percent, without rounding errors.
 fn percent(share: f64) -> f64 {
     (share * 1e6).round() / 1e4
-}
-
-fn transformed(mesh: &TriMesh, map: impl Fn(&Point3<f64>) -> Point3<f64>) -> TriMesh {
-    TriMesh { positions: mesh.positions.iter().map(map).collect(), faces: mesh.faces.clone() }
 }
 
 /// The diagonal of the bounding box.

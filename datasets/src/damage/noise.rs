@@ -7,10 +7,7 @@ use crate::stream::Stream;
 
 /// Adds noise of the given standard deviation to every coordinate.
 pub(super) fn noise(mesh: &TriMesh, deviation: f64, stream: &mut Stream) -> TriMesh {
-    let mut normal = || stream.normal();
-    let positions =
-        mesh.positions.iter().map(|p| p + Vector3::from([(); 3].map(|()| normal())) * deviation).collect();
-    TriMesh { positions, faces: mesh.faces.clone() }
+    mesh.moved(|p| p + Vector3::from([(); 3].map(|()| stream.normal())) * deviation)
 }
 
 /// Displacement of shot noise, relative to the diagonal of the bounding box.
