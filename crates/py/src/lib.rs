@@ -47,7 +47,7 @@ mod _canonform {
     #[pymodule_export]
     use crate::matching::{map_basis, map_points, match_surfaces};
     #[pymodule_export]
-    use crate::nystrom::{Extension, nystrom, search_landmarks};
+    use crate::nystrom::{Extension, nystrom};
     #[pymodule_export]
     use crate::operators::{closest_points, eigenbasis, laplacian, log_map};
     #[pymodule_export]

@@ -1,15 +1,12 @@
 //! Embeddings of any points with distances.
 
-use std::sync::Arc;
-
-use canonform::Error;
 use canonform::linalg::LandmarkDistances;
-use canonform::nmds::{self, Embedding, OutOfSample, Regularization, nystrom_extended};
+use canonform::nmds::{Embedding, OutOfSample, nystrom_extended};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{self, matrix_of};
-use crate::run::{run, run_calling};
+use crate::run::run;
 use crate::settings::Settings;
 
 /// An embedding, and what places further points in it.
@@ -46,46 +43,6 @@ impl Extension {
         let axes = arrays::of_matrix(py, axes)?;
         Ok((*unit, arrays::vector(py, means.clone()), axes))
     }
-}
-
-/// Finds how many landmarks are enough, and the rank for them; none if the regularization has none to choose. `columns` gives
-/// the first landmarks of a number and their columns of distances, `rows` the columns of some points.
-#[pyfunction]
-pub(crate) fn search_landmarks(
-    py: Python<'_>,
-    settings: Settings,
-    columns: Py<PyAny>,
-    rows: Py<PyAny>,
-    limit: usize,
-    seed: u64,
-) -> PyResult<(usize, Option<usize>)> {
-    let options = settings.nystrom()?;
-    let [columns, rows] = [columns, rows].map(Arc::new);
-    let found = run_calling(py, |_, caller| {
-        let search = nmds::SampleSearch {
-            first: options.first_samples(),
-            limit,
-            seed,
-            embed: &|distances| nmds::nystrom(distances, &options),
-        };
-        let of_number = |n: usize| {
-            let columns = columns.clone();
-            let (landmarks, columns) = caller.call(move |py| {
-                let found = columns.call1(py, (n,))?;
-                let (landmarks, columns): (Vec<usize>, PyReadonlyArray2<'_, f64>) = found.extract(py)?;
-                Ok((landmarks, matrix_of(&columns)))
-            })?;
-            Ok::<_, Error>(LandmarkDistances::new(landmarks, columns)?)
-        };
-        let of_points = |points: &[usize]| {
-            let (rows, points) = (rows.clone(), points.to_vec());
-            caller.call(move |py| Ok(matrix_of(&rows.call1(py, (points,))?.extract(py)?)))
-        };
-        let (embedding, distances, _) = search.run(of_number, of_points)?;
-        Ok((distances.n_landmarks(), embedding.rank))
-    })?;
-    let is_free = matches!(options.regularization, Regularization::LowRank { .. });
-    Ok((found.0, is_free.then_some(found.1)))
 }
 
 /// Nystrom MDS from columns of distances, one for each landmark.

@@ -2,7 +2,7 @@
 //!
 //! Work runs on a pool of threads, while the calling thread waits for it. Only that thread can be the main thread of
 //! Python, which alone handles signals: it looks for them several times a second, and cancels the budget of the work when
-//! one raises an exception. Worker threads never touch Python: the waiting thread makes their calls.
+//! one raises an exception. Worker threads never touch Python.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -113,50 +113,15 @@ pub(crate) fn run<T: Send>(
     py: Python<'_>,
     work: impl FnOnce(&dyn Observer) -> Result<T, Error> + Send,
 ) -> PyResult<T> {
-    run_calling(py, |observer, _| work(observer))
-}
-
-/// [`run`] for work that calls Python.
-pub(crate) fn run_calling<T: Send>(
-    py: Python<'_>,
-    work: impl FnOnce(&dyn Observer, &Caller<'_>) -> Result<T, Error> + Send,
-) -> PyResult<T> {
     let budget = Keywords::current(py).budget;
     Ok(run_within(py, &budget, work)?)
 }
 
-/// A call of Python.
-type Call = Box<dyn FnOnce(Python<'_>) -> PyResult<()> + Send>;
-
-/// What work tells the thread that waits for it.
-enum Message<T> {
-    Call(Call),
-    Done(Result<T, Error>),
-}
-
-/// Makes calls of Python for work.
-pub(crate) struct Caller<'a>(&'a dyn Fn(Call));
-
-impl Caller<'_> {
-    /// The result of a call. If it raises an exception, that ends the work.
-    pub(crate) fn call<T: Send + 'static>(
-        &self,
-        call: impl FnOnce(Python<'_>) -> PyResult<T> + Send + 'static,
-    ) -> Result<T, Error> {
-        let (send, receive) = channel();
-        (self.0)(Box::new(move |py| {
-            let _ = send.send(call(py)?);
-            Ok(())
-        }));
-        receive.recv().map_err(|_| Exceeded::Cancelled.into())
-    }
-}
-
-/// [`run_calling`] with a budget of its own, which is cancelled when that of the call is over.
+/// [`run`] with a budget of its own, which is cancelled when that of the call is over.
 pub(crate) fn run_within<T: Send>(
     py: Python<'_>,
     budget: &Budget,
-    work: impl FnOnce(&dyn Observer, &Caller<'_>) -> Result<T, Error> + Send,
+    work: impl FnOnce(&dyn Observer) -> Result<T, Error> + Send,
 ) -> Result<T, Stopped> {
     let call = Keywords::current(py);
     let over = |fault: Exceeded| Stopped::Interrupted(to_python(&fault.into()));
@@ -168,24 +133,20 @@ pub(crate) fn run_within<T: Send>(
         let (watched, exception) = (&watched, &mut exception);
         pool.in_place_scope(|scope| {
             let (send, receive) = channel();
-            scope.spawn(move |_| {
-                // The receiver waits until it has the result.
-                let tell = |message| drop(send.send(message));
-                let result = work(watched, &Caller(&|call| tell(Message::Call(call))));
-                tell(Message::Done(result));
-            });
+            // The receiver waits until it has the result.
+            scope.spawn(move |_| drop(send.send(work(watched))));
             loop {
-                let raised = match receive.recv_timeout(INTERVAL) {
-                    Ok(Message::Done(result)) => return Some(result),
+                match receive.recv_timeout(INTERVAL) {
+                    Ok(result) => return Some(result),
                     // The work has panicked, and the end of the scope passes that on.
                     Err(RecvTimeoutError::Disconnected) => return None,
-                    _ if exception.is_some() => continue,
-                    Ok(Message::Call(call)) => Python::attach(call),
-                    Err(RecvTimeoutError::Timeout) => Python::attach(|py| watched.look(py, &call)),
-                };
-                if let Err(raised) = raised {
-                    *exception = Some(raised);
-                    watched.budget.cancel();
+                    Err(RecvTimeoutError::Timeout) if exception.is_some() => {}
+                    Err(RecvTimeoutError::Timeout) => {
+                        if let Err(raised) = Python::attach(|py| watched.look(py, &call)) {
+                            *exception = Some(raised);
+                            watched.budget.cancel();
+                        }
+                    }
                 }
             }
         })

@@ -107,7 +107,7 @@ impl Surface {
             let kept = self.solvers.get(&method).filter(|_| limit.is_none());
             let budget = kept.as_ref().map_or_else(Budget::unlimited, |kept| kept.budget.clone());
             let budget = limit.map_or(budget.clone(), |bytes| budget.with_memory(bytes));
-            let outcome = run_within(py, &budget, |observer, _| {
+            let outcome = run_within(py, &budget, |observer| {
                 let prepared = match kept {
                     Some(prepared) => prepared,
                     None => {

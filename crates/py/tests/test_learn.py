@@ -101,30 +101,6 @@ def test_it_works_in_a_pipeline_and_after_pickling() -> None:
     assert mds.get_feature_names_out().tolist() == ["nystrommds0", "nystrommds1"]
 
 
-def test_landmarks_are_taken_until_they_are_enough() -> None:
-    X = points(400, 6)
-    mds = NystromMDS(n_landmarks="auto", n_components=6).fit(X)
-    assert len(mds.landmarks_) == 11, "points in space are exact from the first landmarks"
-    # Not Euclidean, so the stress falls with the number of landmarks.
-    for sampling in ("farthest", "random"):
-        given = {"n_components": 3, "metric": "manhattan", "sampling": sampling, "random_state": 3}
-        settled = NystromMDS(n_landmarks="auto", **given).fit(X)
-        n = len(settled.landmarks_)
-        assert 8 < n < 400
-        fixed = NystromMDS(n_landmarks=n, rank=settled.rank_, **given).fit(X)
-        np.testing.assert_array_equal(settled.landmarks_, fixed.landmarks_)
-        np.testing.assert_array_equal(settled.embedding_, fixed.embedding_)
-
-
-def test_a_surface_needs_as_many_landmarks_as_its_form(cat: Shape) -> None:
-    surface = cat.surface()
-    form = surface.canonical_form(n_landmarks="auto")
-    metric = lambda a, b: surface.distances(int(a))[b]  # noqa: E731
-    mds = NystromMDS(n_landmarks="auto", metric=metric).fit(np.arange(surface.n_vertices))
-    np.testing.assert_array_equal(mds.landmarks_, form.landmarks)
-    np.testing.assert_array_equal(mds.embedding_, form.points)
-
-
 def test_fewer_landmarks_are_taken_if_points_repeat() -> None:
     X = np.repeat(points(12, 3), 5, axis=0)
     mds = NystromMDS(n_landmarks=30).fit(X)
@@ -138,7 +114,7 @@ def test_fewer_landmarks_are_taken_if_points_repeat() -> None:
         ({"n_landmarks": 2.5}, "n_landmarks=2.5 is not possible: give a whole number"),
         ({"n_landmarks": True}, "n_landmarks=True"),
         ({"n_components": True}, "n_components=true"),
-        ({"n_landmarks": "many"}, "or 'auto'"),
+        ({"n_landmarks": "many"}, "n_landmarks='many' is not possible: give a whole number"),
         ({"sampling": "best"}, "'farthest' or 'random'"),
         ({"regularization": "magic"}, 'use "low-rank"'),
         ({"n_components": 200}, "200 dimensions"),
@@ -154,7 +130,6 @@ def test_errors_say_what_to_do(parameters: dict, words: str) -> None:
     assert isinstance(raised.value, ValueError) and words in str(raised.value), str(raised.value)
 
 
-@pytest.mark.parametrize("n_landmarks", [100, "auto"])
 @pytest.mark.parametrize(
     ("X", "words"),
     [
@@ -164,9 +139,9 @@ def test_errors_say_what_to_do(parameters: dict, words: str) -> None:
         (np.ones((1, 4)), "minimum of 2"),
     ],
 )
-def test_points_without_a_shape_are_refused(X: np.ndarray, words: str, n_landmarks: int | str) -> None:
+def test_points_without_a_shape_are_refused(X: np.ndarray, words: str) -> None:
     with pytest.raises(canonform.CanonformError) as raised:
-        NystromMDS(n_landmarks=n_landmarks).fit(X)
+        NystromMDS().fit(X)
     assert isinstance(raised.value, ValueError) and words in str(raised.value), str(raised.value)
 
 

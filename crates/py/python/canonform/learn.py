@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _canonform
 from ._arrays import Floats, Ints
 from ._reference import complete
-from ._settings import Call, Landmarks, Regularization, running, unmasked, whole
+from ._settings import Call, Regularization, running, unmasked, whole
 from .errors import CanonformError, OptionError
 
 try:
@@ -27,9 +27,6 @@ __all__ = ["NystromMDS"]
 
 _ROUNDING = 1e-7
 """Differences of distances that are not told from zero, relative to the largest distance."""
-
-_MOST_LANDMARKS = 640
-"""As many as n_landmarks="auto" takes, as on surfaces."""
 
 Metric: TypeAlias = str | Callable[[Any, Any], ArrayLike]
 
@@ -54,9 +51,8 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
 
     Parameters
     ----------
-    n_landmarks : int or "auto", default=100
-        Number of landmarks, fewer if there are fewer different points. "auto" takes landmarks until twice as many reduced the stress by
-        less than 1 %, at most 640.
+    n_landmarks : int, default=100
+        Number of landmarks, fewer if there are fewer different points.
     n_components : int, default=3
         Dimensions of the embedding.
     metric : str or callable, default="euclidean"
@@ -77,7 +73,7 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
     alpha : float or "paper", default=None
         How strongly "rpi" damps small eigenvalues.
     random_state : int, RandomState or None, default=None
-        For `sampling="random"`, and for the distances that n_landmarks="auto" looks at. Elsewhere in canonform a whole number, `seed`.
+        For `sampling="random"`. Elsewhere in canonform a whole number, `seed`.
     warm_start : bool, default=False
         Keep the distances from the landmarks, so that the next fit to the same points measures those from further landmarks only:
         `form.set_params(n_landmarks=200).fit(X)`. Takes the memory of n p numbers between fits.
@@ -117,7 +113,7 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
 
     def __init__(
         self,
-        n_landmarks: Landmarks = 100,
+        n_landmarks: int = 100,
         n_components: int = 3,
         *,
         metric: Metric = "euclidean",
@@ -165,15 +161,9 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         known: _Landmarks | None = getattr(self, "_taken", None) if self.warm_start else None
         taken = known if known is not None and known.continues(self, X) else _Landmarks(self, X)
         self._taken = taken if self.warm_start else None
-        rank = self.rank
-        if self.n_landmarks == "auto":
-            n_landmarks, rank = self._searched(X, taken)
-        elif isinstance(self.n_landmarks, str):
-            raise OptionError(f"n_landmarks={self.n_landmarks!r} is not possible: give a positive number, or 'auto'")
-        else:
-            n_landmarks = whole("n_landmarks", self.n_landmarks, 1)
-        landmarks, columns = taken.first(n_landmarks)
-        found = _canonform.nystrom(columns, landmarks.tolist(), {**self._settings(), "rank": rank})
+        landmarks, columns = taken.first(whole("n_landmarks", self.n_landmarks, 1))
+        settings = {"n_components": self.n_components, "regularization": self.regularization, "rank": self.rank, "alpha": self.alpha}
+        found = _canonform.nystrom(columns, landmarks.tolist(), settings)
         self.embedding_, self.eigenvalues_, self.negative_mass_, self.rank_, self._extension = found
         self.landmarks_ = landmarks
         self._n_fitted = n
@@ -251,27 +241,9 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
             return column
         return pairwise_distances(X, np.asarray(a)[None], metric=self.metric, **parameters)[:, 0]
 
-    def _settings(self) -> dict[str, Any]:
-        return {"n_components": self.n_components, "regularization": self.regularization, "rank": self.rank, "alpha": self.alpha}
-
     def _measure(self, X: Any, i: int) -> Floats:
         """The distances from a point of the fit to all."""
         return X[:, i] if self.metric == "precomputed" else self._column(X[i], X)
-
-    def _searched(self, X: Any, taken: _Landmarks) -> tuple[int, int | None]:
-        """Takes landmarks until they are enough; their number, and the rank for them."""
-        seed = int(check_random_state(self.random_state).randint(2**31 - 1)) if self.random_state is not None else 0
-        settings = self._settings()
-        limit = min(_MOST_LANDMARKS, len(X))
-
-        def columns(n: int) -> tuple[list[int], Floats]:
-            landmarks, found = taken.first(n)
-            return landmarks.tolist(), found
-
-        def rows(points: list[int]) -> Floats:
-            return np.stack([self._measure(X, i) for i in points], axis=1).astype(np.float64)
-
-        return _canonform.search_landmarks(settings, columns, rows, limit, seed)
 
     @property
     def _n_features_out(self) -> int:
