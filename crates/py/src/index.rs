@@ -15,7 +15,7 @@ use canonform::library::{
 use canonform::linalg::DistanceMatrix;
 use canonform::mesh::RepairOptions;
 use canonform::retrieval::{Labels, evaluate};
-use canonform::search::{Answer, PairwiseDistance, Query, SearchOptions, ShapeSearch};
+use canonform::search::{Answer, Query, SearchOptions, ShapeSearch};
 use canonform::{DescribeOptions, Error, Observer};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -300,14 +300,7 @@ impl Index {
         columns: Option<Vec<String>>,
         kind: &str,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let kind = match kind {
-            "combined" => PairwiseDistance::Combined,
-            "fused" => PairwiseDistance::Fused,
-            _ => {
-                let message = format!("kind={kind:?} is not possible: use \"combined\", \"fused\"");
-                return Err(Exception::OptionError.with(&message));
-            }
-        };
+        let kind = chosen("kind", kind)?;
         let distances = run(py, |observer| self.search.distances(&rows, columns.as_deref(), kind, observer))?;
         arrays::of_matrix(py, &distances)
     }

@@ -34,7 +34,7 @@ mod _canonform {
     #[pymodule_export]
     use crate::compare::{align, compare};
     #[pymodule_export]
-    use crate::datasets::{creatures, families, generate};
+    use crate::datasets::{families, generate};
     #[pymodule_export]
     use crate::field::DistanceField;
     #[pymodule_export]

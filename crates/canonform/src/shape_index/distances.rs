@@ -4,12 +4,14 @@ use base::Observer;
 use descriptors::{ShapeMetric, ShapePair};
 use linalg::Matrix;
 use rayon::prelude::*;
+use serde::Deserialize;
 
 use super::search::ShapeSearch;
 use crate::error::Error;
 
 /// Which distance of two shapes is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum PairwiseDistance {
     /// By signatures and aligned forms.
     #[default]

@@ -99,8 +99,7 @@ def families() -> dict[str, int | None]:
     >>> canonform.datasets.families()["cat"]
     9
     """
-    articulated, plans = _canonform.families()
-    return {**dict(articulated), **dict.fromkeys(plans)}
+    return dict(_canonform.families())
 
 
 def generate(
@@ -131,27 +130,21 @@ def generate(
     ['cat0', 'cat2', 'worm0', 'worm2']
     """
     n_vertices, seed = whole("n_vertices", n_vertices), whole("seed", seed)
-    articulated, plans = _canonform.families()
-    known = dict(articulated)
+    known = families()
     if not isinstance(family, Iterable):
-        raise OptionError(f"family={family!r} is not possible: use \"all\", {', '.join(map(repr, families()))}")
+        raise OptionError(f"family={family!r} is not possible: use \"all\", {', '.join(map(repr, known))}")
     names: list[str] = _DATASET if family == "all" else [family] if isinstance(family, str) else list(family)
     made: list[Shape] = []
     with running(call):
         for name in names:
-            if name not in known and name not in plans:
-                raise OptionError(f"family={name!r} is not possible: use \"all\", {', '.join(map(repr, families()))}")
-            count = known.get(name, 8)
-            wanted = range(count) if poses is None else range(poses) if isinstance(poses, int) else list(poses)
+            if name not in known:
+                raise OptionError(f"family={name!r} is not possible: use \"all\", {', '.join(map(repr, known))}")
+            count = known[name]
+            wanted = range(count or 8) if poses is None else range(poses) if isinstance(poses, int) else list(poses)
             for pose in wanted:
-                if whole("poses", pose, -1) < 0 or (name in known and pose >= count):
-                    raise OptionError(f"poses={pose} is not possible: {name} has the poses 0 to {count - 1}")
-            if name in known:
-                shapes = [(list(known).index(name), pose) for pose in wanted]
-                found = _canonform.generate(shapes, n_vertices, seed)
-            else:
-                found = _canonform.creatures([(plans.index(name), pose) for pose in wanted], n_vertices, seed)
-            made.extend(Shape(*shape) for shape in found)
+                if whole("poses", pose, -1) < 0 or (count is not None and pose >= count):
+                    raise OptionError(f"poses={pose} is not possible: {name} has the poses 0 to {(count or 8) - 1}")
+            made.extend(Shape(*shape) for shape in _canonform.generate(name, list(wanted), n_vertices, seed))
     return made
 
 
