@@ -1,15 +1,15 @@
 //! The index that is served, reopened when its file changes.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, PoisonError, RwLock};
+use std::sync::Arc;
 use std::time::SystemTime;
 
 use base::files::FileId;
-use canonform::index::{Entry, Facts, log_path};
+use canonform::Error;
+use canonform::index::{Entry, log_path};
 use canonform::search::{SearchOptions, ShapeSearch};
-use canonform::{ContentHash, Error};
 use serde::Serialize;
+use tokio::sync::watch;
 
 use crate::cost;
 
@@ -17,82 +17,40 @@ use crate::cost;
 pub(crate) struct Collection {
     pub(crate) search: ShapeSearch,
     /// All shapes, by ascending name.
-    pub(crate) shapes: Vec<ShapeSummary>,
-    /// Places in `shapes`, by class.
-    classes: Vec<Vec<usize>>,
+    pub(crate) shapes: Vec<Entry>,
     /// Changes with the content of the index.
     pub(crate) version: String,
     /// The folder of the index, absolute, and the same with links resolved.
     folders: Vec<PathBuf>,
 }
 
-/// A shape in a list.
-#[derive(Debug, Clone, Serialize)]
-pub(crate) struct ShapeSummary {
-    pub(crate) id: String,
-    pub(crate) label: String,
-    pub(crate) vertices: u64,
-    faces: u64,
-    /// In squared mesh units.
-    area: f64,
-    /// The largest surface distance from a sample, in mesh units.
-    diameter: f64,
-    #[serde(skip)]
-    pub(crate) content: ContentHash,
-}
-
 impl Collection {
     fn open(path: &Path) -> Result<Self, Error> {
         let search = ShapeSearch::open(path)?;
-        let shapes =
-            search.index().entries()?.into_iter().map(|Entry { id, label, content, facts, .. }| {
-                let Facts { vertices, faces, area, diameter, .. } = facts;
-                ShapeSummary { id, label, vertices, faces, area, diameter, content }
-            });
-        let shapes: Vec<ShapeSummary> = shapes.collect();
-        let mut classes: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
-        for (place, shape) in shapes.iter().enumerate() {
-            classes.entry(&shape.label).or_default().push(place);
-        }
-        let classes = classes.into_values().collect();
+        let shapes = search.index().entries()?;
         let version = format!("{:016x}", search.index().change);
         let absolute = std::path::absolute(path).ok();
         let folders = [absolute, path.canonicalize().ok()];
         let folders = folders.into_iter().flatten().filter_map(|file| Some(file.parent()?.to_owned()));
-        Ok(Self { folders: folders.collect(), search, shapes, classes, version })
+        Ok(Self { folders: folders.collect(), search, shapes, version })
     }
 
     /// A shape by its name.
-    pub(crate) fn shape(&self, id: &str) -> Option<&ShapeSummary> {
+    pub(crate) fn shape(&self, id: &str) -> Option<&Entry> {
         let place = self.shapes.binary_search_by(|shape| shape.id.as_str().cmp(id)).ok()?;
         self.shapes.get(place)
     }
 
     /// Vertices of a shape, or zero.
     pub(crate) fn n_vertices(&self, id: &str) -> u64 {
-        self.shape(id).map_or(0, |shape| shape.vertices)
+        self.shape(id).map_or(0, |shape| shape.facts.vertices)
     }
 
     /// What a search with a described query of so many vertices costs.
     pub(crate) fn search_cost(&self, options: &SearchOptions, vertices: u64) -> f64 {
-        let all: u64 = self.shapes.iter().map(|shape| shape.vertices).sum();
+        let all: u64 = self.shapes.iter().map(|shape| shape.facts.vertices).sum();
         let n = self.shapes.len();
         cost::of_search(options, n, all / n.max(1) as u64, vertices)
-    }
-
-    /// Up to `n` shapes of as many classes as possible.
-    pub(crate) fn sample(&self, n: usize) -> Vec<&ShapeSummary> {
-        let n_classes = self.classes.len();
-        let places: Vec<usize> = if n_classes > n {
-            (0..n).map(|i| self.classes[i * n_classes / n][0]).collect()
-        } else {
-            let longest = self.classes.iter().map(Vec::len).max().unwrap_or(0);
-            let rounds = (0..longest).flat_map(|i| self.classes.iter().filter_map(move |class| class.get(i)));
-            let mut places: Vec<usize> = rounds.take(n).copied().collect();
-            places.sort_unstable();
-            places
-        };
-        places.into_iter().map(|place| &self.shapes[place]).collect()
     }
 
     /// A path as clients may see it: relative to the folder of the index, or only the name of the file. Clients must
@@ -123,7 +81,7 @@ pub(crate) enum FileState {
 /// The index in service.
 pub(crate) struct Served {
     path: PathBuf,
-    now: RwLock<Now>,
+    now: watch::Sender<Now>,
 }
 
 struct Now {
@@ -152,46 +110,42 @@ impl Served {
         let seen = identity(path);
         let collection = Arc::new(Collection::open(path)?);
         let now = Now { collection, seen, state: FileState::Current };
-        Ok(Self { path: path.to_owned(), now: RwLock::new(now) })
+        Ok(Self { path: path.to_owned(), now: watch::Sender::new(now) })
     }
 
     /// The index for a request.
     pub(crate) fn collection(&self) -> Arc<Collection> {
-        self.read(|now| now.collection.clone())
+        self.now.borrow().collection.clone()
     }
 
     pub(crate) fn state(&self) -> FileState {
-        self.read(|now| now.state)
+        self.now.borrow().state
     }
 
     /// Opens the file if it has changed. An error leaves the old index in service and is printed once.
     pub(crate) fn refresh(&self) {
         let found = identity(&self.path);
-        if self.read(|now| now.seen == found) {
+        if self.now.borrow().seen == found {
             return;
         }
         let opened = found.as_ref().map(|_| Collection::open(&self.path));
-        let mut now = self.now.write().unwrap_or_else(PoisonError::into_inner);
-        now.seen = found;
-        now.state = match opened {
-            None => FileState::Missing,
-            Some(Ok(collection)) => {
-                let collection = Arc::new(collection);
-                base::write_line(&format!("the index has changed: {} shapes", collection.shapes.len()));
-                now.collection = collection;
-                FileState::Current
-            }
-            Some(Err(error)) => {
-                base::write_line(&format!(
-                    "the index has changed and cannot be opened; the old one is used: {error}"
-                ));
-                FileState::Unreadable
-            }
-        };
-    }
-
-    /// A poisoned lock is harmless: the state changes as a whole.
-    fn read<T>(&self, get: impl FnOnce(&Now) -> T) -> T {
-        get(&self.now.read().unwrap_or_else(PoisonError::into_inner))
+        self.now.send_modify(|now| {
+            now.seen = found;
+            now.state = match opened {
+                None => FileState::Missing,
+                Some(Ok(collection)) => {
+                    let n = collection.shapes.len();
+                    base::write_line(&format!("the index has changed: {n} shapes"));
+                    now.collection = Arc::new(collection);
+                    FileState::Current
+                }
+                Some(Err(error)) => {
+                    base::write_line(&format!(
+                        "the index has changed and cannot be opened; the old one is used: {error}"
+                    ));
+                    FileState::Unreadable
+                }
+            };
+        });
     }
 }

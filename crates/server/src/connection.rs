@@ -3,11 +3,9 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use axum::extract::Request;
+use axum::Extension;
 use futures_util::future::{Either, select};
-use hyper::body::Incoming;
 use hyper::server::conn::http1;
-use hyper::service::{Service, service_fn};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::server::graceful::Watcher;
 use hyper_util::service::TowerToHyperService;
@@ -30,15 +28,8 @@ pub(crate) async fn serve(
     watcher: Watcher,
     idle_time: Duration,
 ) {
-    let router = TowerToHyperService::new(router);
-    let requests = {
-        let pace = pace.clone();
-        service_fn(move |mut request: hyper::Request<Incoming>| {
-            // For the guard, and for the reception of uploads.
-            request.extensions_mut().insert(pace.clone());
-            router.call(request)
-        })
-    };
+    // For the guard, and for the reception of uploads.
+    let requests = TowerToHyperService::new(router.layer(Extension(pace.clone())));
     let counted = |pace: &Arc<Pace>| {
         let pace = pace.clone();
         move |moved: &[u8]| pace.moved(moved.len())
@@ -58,9 +49,4 @@ pub(crate) async fn serve(
     match select(served, slow).await {
         Either::Left(_) | Either::Right(_) => {}
     }
-}
-
-/// The account of the connection of a request.
-pub(crate) fn pace_of(request: &Request) -> Option<Arc<Pace>> {
-    request.extensions().get::<Arc<Pace>>().cloned()
 }

@@ -2,7 +2,7 @@
 //!
 //! Measured with generated cats of 3,400 and 30,000 vertices and an index of 144 shapes.
 
-use canonform::search::{SearchOptions, SearchRank};
+use canonform::search::{SearchOptions, SearchRank, n_candidates};
 
 /// To measure and describe an upload: 22 s for a text file of 14 MB with 193,600 vertices, one core.
 pub(crate) const UPLOADED_BYTE: f64 = 1.6e-6;
@@ -31,9 +31,6 @@ pub(crate) const MATCHED_VERTEX: f64 = 4e-4;
 /// To read and draw a mesh: 0.17 s for 30,000 vertices.
 pub(crate) const DRAWN_VERTEX: f64 = 5e-6;
 
-/// Most forms that are aligned for each result.
-const CANDIDATES: usize = 4;
-
 /// A search with a described query of so many vertices, among shapes of a mean size. A result is assumed to be as large as
 /// the larger of both.
 pub(crate) fn of_search(options: &SearchOptions, n_shapes: usize, mean: u64, vertices: u64) -> f64 {
@@ -43,7 +40,7 @@ pub(crate) fn of_search(options: &SearchOptions, n_shapes: usize, mean: u64, ver
         SearchRank::Part => measured + n_shapes as f64 * FITTED_SHAPE,
         SearchRank::Forms => n_shapes as f64 * COMPARED_SPECTRUM,
     };
-    let aligned = n_shapes.min(CANDIDATES * options.k) as f64 * ALIGNED_FORM;
+    let aligned = n_shapes.min(n_candidates(options.k)) as f64 * ALIGNED_FORM;
     let result = ALIGNED_FORM + vertices.max(mean) as f64 * EXPLAINED_VERTEX;
     // The components of the query are measured, too.
     let explained = if options.explain { measured + n_shapes.min(options.k) as f64 * result } else { 0.0 };

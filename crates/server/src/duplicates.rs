@@ -4,7 +4,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
+use axum::Json;
 use axum::body::Bytes;
+use axum::http::{StatusCode, header};
+use axum::response::{IntoResponse, Response};
 use canonform::library::{DuplicateOptions, find_duplicates};
 use canonform::{Budget, Error, Observer};
 use rayon::ThreadPoolBuilder;
@@ -15,6 +18,9 @@ use crate::error::ApiError;
 use crate::options::STACK;
 use crate::work::CancelOnDrop;
 
+/// Seconds after which a client may ask again.
+const AGAIN: &str = "1";
+
 /// The search in progress, or the last one: one for each version of the index.
 pub(crate) struct Duplicates {
     run: Mutex<Option<Run>>,
@@ -22,17 +28,9 @@ pub(crate) struct Duplicates {
     patience: Duration,
 }
 
-/// What is known so far.
-pub(crate) enum Known {
-    /// All of it, as JSON.
-    Report(Bytes),
-    /// How far the search is.
-    Progress(Progress),
-}
-
 /// How far a search is.
-#[derive(Debug, Clone, Default, Serialize)]
-pub(crate) struct Progress {
+#[derive(Clone, Default, Serialize)]
+struct Progress {
     stage: String,
     done: usize,
     total: usize,
@@ -72,16 +70,20 @@ impl Duplicates {
         Self { run: Mutex::default(), patience }
     }
 
-    /// The duplicates of the collection, if they are known; otherwise they are searched for, on a thread of their own.
-    pub(crate) fn ask(&self, collection: &Arc<Collection>) -> Result<Known, ApiError> {
+    /// The duplicates of the collection, if they are known; otherwise they are searched for, on a thread of their own, and the
+    /// answer says how far that is.
+    pub(crate) fn ask(&self, collection: &Arc<Collection>) -> Result<Response, ApiError> {
         let mut now = lock(&self.run);
         let run = match now.take().filter(|run| run.version == collection.version) {
             Some(run) => now.insert(Run { asked: Instant::now(), ..run }),
             None => now.insert(Run::start(collection.clone())?),
         };
         match run.watched.outcome.get().cloned() {
-            None => Ok(Known::Progress(lock(&run.watched.progress).clone())),
-            Some(Ok(report)) => Ok(Known::Report(report)),
+            None => {
+                let progress = Json(lock(&run.watched.progress).clone());
+                Ok((StatusCode::ACCEPTED, [(header::RETRY_AFTER, AGAIN)], progress).into_response())
+            }
+            Some(Ok(report)) => Ok(([(header::CONTENT_TYPE, "application/json")], report).into_response()),
             // The next client starts another search.
             Some(Err(fault)) => {
                 *now = None;

@@ -4,6 +4,7 @@ use std::net::IpAddr;
 use std::panic::AssertUnwindSafe;
 use std::sync::Arc;
 
+use axum::Extension;
 use axum::extract::{Request, State};
 use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, Uri, header};
 use axum::middleware::Next;
@@ -11,11 +12,10 @@ use axum::response::{IntoResponse, Response};
 use futures_util::FutureExt;
 
 use crate::app::App;
-use crate::connection::pace_of;
 use crate::error::ApiError;
 use crate::options::ServeOptions;
-use crate::pace::Phase;
-use crate::upload::drain;
+use crate::pace::{Pace, Phase};
+use crate::upload::SharedBody;
 
 const SEC_FETCH_SITE: HeaderName = HeaderName::from_static("sec-fetch-site");
 
@@ -33,21 +33,23 @@ const HEADERS: [(HeaderName, &str); 5] = [
 ];
 
 /// Refuses requests for other servers, turns panics into responses, and adds the headers.
-pub(crate) async fn guard(State(app): State<Arc<App>>, request: Request, next: Next) -> Response {
-    let pace = pace_of(&request);
-    let begin = |phase| pace.iter().for_each(|pace| pace.begin(phase));
-    begin(Phase::Working);
+pub(crate) async fn guard(
+    State(app): State<Arc<App>>,
+    Extension(pace): Extension<Arc<Pace>>,
+    request: Request,
+    next: Next,
+) -> Response {
+    pace.begin(Phase::Working);
+    let (request, body) = SharedBody::of(request);
     let mut response = match check(&app, request.uri(), request.headers()) {
         Ok(()) => {
             let answer = AssertUnwindSafe(next.run(request)).catch_unwind().await;
             answer.unwrap_or_else(|_| ApiError::internal().into_response())
         }
-        Err(refused) => {
-            drain(request);
-            refused.into_response()
-        }
+        Err(refused) => refused.into_response(),
     };
-    begin(Phase::Waiting);
+    tokio::spawn(body.drained());
+    pace.begin(Phase::Waiting);
     let headers = response.headers_mut();
     for (name, value) in HEADERS {
         headers.insert(name, HeaderValue::from_static(value));
@@ -73,7 +75,6 @@ pub(crate) async fn refuse_foreign_pages(request: Request, next: Next) -> Result
     if is_own {
         return Ok(next.run(request).await);
     }
-    drain(request);
     Err(ApiError::new(StatusCode::FORBIDDEN, "cross-origin requests are not allowed")
         .with_remedy("send the request from a page of this server, or from a program that is not a browser"))
 }

@@ -27,8 +27,6 @@ pub struct ServeOptions {
     /// Number of requests processed at once; 0 for one more than there are cores. One of several places is kept for
     /// requests that take little time. Default: 0.
     pub jobs: usize,
-    /// Number of requests that may wait for a job; further ones are rejected. Default: 64.
-    pub queue: usize,
     /// Maximum time from the start of the wait for a job to the response; then the job is cancelled. An upload that
     /// could not be answered in time, as far as can be estimated, is refused at once. Default: one minute.
     pub time_limit: Duration,
@@ -52,7 +50,6 @@ impl Default for ServeOptions {
             max_vertices: 200_000,
             max_uploads: 16,
             jobs: 0,
-            queue: 64,
             time_limit: Duration::from_secs(60),
             upload_time: Duration::from_secs(300),
             idle_time: Duration::from_secs(15),

@@ -9,7 +9,7 @@ use std::time::Duration;
 use axum::middleware::{from_fn, from_fn_with_state};
 use futures_util::future::{Either, select};
 use hyper_util::server::graceful::GracefulShutdown;
-use tokio::sync::watch;
+use tokio_util::sync::CancellationToken;
 
 use crate::app::App;
 use crate::error::ServerError;
@@ -33,7 +33,7 @@ pub struct Server {
     listener: TcpListener,
     address: SocketAddr,
     app: Arc<App>,
-    stop: (watch::Sender<bool>, watch::Receiver<bool>),
+    stop: Stop,
 }
 
 impl std::fmt::Debug for Server {
@@ -43,13 +43,13 @@ impl std::fmt::Debug for Server {
 }
 
 /// Stops a server.
-#[derive(Debug, Clone)]
-pub struct Stop(watch::Sender<bool>);
+#[derive(Debug, Clone, Default)]
+pub struct Stop(CancellationToken);
 
 impl Stop {
     /// Accepts no more connections and finishes the requests in progress.
     pub fn stop(&self) {
-        self.0.send_replace(true);
+        self.0.cancel();
     }
 }
 
@@ -65,7 +65,7 @@ impl Server {
         let listener = TcpListener::bind(asked).map_err(fault)?;
         listener.set_nonblocking(true).map_err(fault)?;
         let address = listener.local_addr().map_err(fault)?;
-        Ok(Self { listener, address, app, stop: watch::channel(false) })
+        Ok(Self { listener, address, app, stop: Stop::default() })
     }
 
     /// The address, with the actual port if port 0 was requested.
@@ -83,7 +83,7 @@ impl Server {
     /// A handle that stops the server from another thread.
     #[must_use]
     pub fn stop_handle(&self) -> Stop {
-        Stop(self.stop.0.clone())
+        self.stop.clone()
     }
 
     /// Serves until it is stopped and the requests in progress are finished or out of time.
@@ -103,7 +103,7 @@ impl Server {
 
     async fn serve(self) -> Result<(), ServerError> {
         let listener = tokio::net::TcpListener::from_std(self.listener).map_err(ServerError::Runtime)?;
-        let (app, mut stop) = (self.app, self.stop.1);
+        let app = self.app;
         // Pages elsewhere may link to the pages here, which begin no work before their own scripts ask for it.
         let router = api::router()
             .layer(from_fn(refuse_foreign_pages))
@@ -121,8 +121,7 @@ impl Server {
                 let place = places.enter(&pace).await;
                 Ok::<_, std::io::Error>((stream, place, pace))
             });
-            // Never fails: the sender lives as long as `self.stop`.
-            let stopped = pin!(stop.wait_for(|stopped| *stopped));
+            let stopped = pin!(self.stop.0.cancelled());
             let Either::Left((accepted, _)) = select(next, stopped).await else { break };
             let Ok((stream, place, pace)) = accepted else {
                 tokio::time::sleep(RETRY_PAUSE).await;

@@ -19,12 +19,11 @@ use crate::options::ServeOptions;
 use crate::pace::{Pace, Phase};
 use crate::places::Place;
 
-/// Allowance for boundaries, headers and other fields of a form, in bytes.
+/// Allowance for boundaries and headers of a form, in bytes.
 const FRAME: usize = 64 << 10;
 
-/// Maximum number of parts of a form, and size of one that is not a file.
-const MOST_PARTS: usize = 16;
-const LONGEST_FIELD: usize = 1 << 10;
+/// Maximum number of files in a form.
+const MOST_FILES: usize = 16;
 
 /// Number of characters of a file name to keep.
 const LONGEST_NAME: usize = 200;
@@ -33,21 +32,8 @@ const LONGEST_NAME: usize = 200;
 const REFUSED_TIME: Duration = Duration::from_secs(5);
 const REFUSED_BYTES: usize = 256 << 20;
 
-/// The contents of a form.
-#[derive(Debug, Default)]
-pub(crate) struct Upload {
-    /// Names without folders, and contents.
-    pub(crate) files: Vec<(PathBuf, Vec<u8>)>,
-    /// Names and texts.
-    pub(crate) fields: Vec<(String, String)>,
-}
-
-impl Upload {
-    /// Size of the files.
-    pub(crate) fn bytes(&self) -> usize {
-        self.files.iter().map(|(_, content)| content.len()).sum()
-    }
-}
+/// Names without folders, and contents.
+pub(crate) type Files = Vec<(PathBuf, Vec<u8>)>;
 
 /// The announced length of a body, in bytes; 0 if it is not announced.
 pub(crate) fn announced(request: &Request) -> usize {
@@ -57,44 +43,34 @@ pub(crate) fn announced(request: &Request) -> usize {
 
 /// Receives a form. The client must keep its pace, or it loses the `place`.
 pub(crate) async fn receive(
-    request: Request,
+    mut request: Request,
     place: &Place,
     pace: &Pace,
     options: &ServeOptions,
-) -> Result<Upload, ApiError> {
-    let announced = announced(&request);
-    let (head, body) = request.into_parts();
-    let body = Shared(Arc::new(Mutex::new(body.into_data_stream())));
-    let mut request = Request::from_parts(head, Body::from_stream(body.clone()));
+) -> Result<Files, ApiError> {
+    if announced(&request) > options.max_upload + FRAME {
+        return Err(ApiError::upload_too_large(options.max_upload));
+    }
     DefaultBodyLimit::max(options.max_upload + FRAME).apply(&mut request);
-    let received = async {
-        if announced > options.max_upload + FRAME {
-            return Err(ApiError::upload_too_large(options.max_upload));
+    pace.begin(Phase::Receiving);
+    let form = pin!(read(request, options));
+    let slow = pin!(pace.is_over(Phase::Receiving));
+    let late = pin!(tokio::time::sleep(options.upload_time));
+    let lost = pin!(place.lost());
+    let received = match select(form, select(select(slow, late), lost)).await {
+        Either::Left((form, _)) => form,
+        Either::Right((Either::Left(_), _)) => {
+            Err(ApiError::upload_too_slow("the upload did not arrive in time"))
         }
-        let form = pin!(read(request, options));
-        let slow = pin!(pace.is_over(Phase::Receiving));
-        let late = pin!(tokio::time::sleep(options.upload_time));
-        let lost = pin!(place.lost());
-        match select(form, select(select(slow, late), lost)).await {
-            Either::Left((form, _)) => form,
-            Either::Right((Either::Left(_), _)) => {
-                Err(ApiError::upload_too_slow("the upload did not arrive in time"))
-            }
-            Either::Right((Either::Right(_), _)) => {
-                Err(ApiError::upload_too_slow("the upload arrived too slowly while others were waiting"))
-            }
+        Either::Right((Either::Right(_), _)) => {
+            Err(ApiError::upload_too_slow("the upload arrived too slowly while others were waiting"))
         }
     };
-    pace.begin(Phase::Receiving);
-    let received = received.await;
     pace.begin(Phase::Working);
-    if received.is_err() {
-        tokio::spawn(drained(body));
-    }
     received
 }
 
-async fn read(request: Request, options: &ServeOptions) -> Result<Upload, ApiError> {
+async fn read(request: Request, options: &ServeOptions) -> Result<Files, ApiError> {
     let mut form = Multipart::from_request(request, &()).await.map_err(|_| {
         ApiError::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, "the request is not a form with a file")
             .with_remedy(form_remedy())
@@ -104,25 +80,22 @@ async fn read(request: Request, options: &ServeOptions) -> Result<Upload, ApiErr
         _ => ApiError::bad_request(format!("the form cannot be read: {}", fault.body_text()))
             .with_remedy(form_remedy()),
     };
-    let mut upload = Upload::default();
+    let mut files = Files::new();
     while let Some(part) = form.next_field().await.map_err(faulty)? {
-        if upload.files.len() + upload.fields.len() == MOST_PARTS {
-            return Err(ApiError::bad_request(format!("the form has more than {MOST_PARTS} parts")));
+        if files.len() == MOST_FILES {
+            return Err(ApiError::bad_request(format!("the form has more than {MOST_FILES} files")));
         }
-        let (name, file) = (part.name().unwrap_or_default().to_owned(), part.file_name().map(clean_name));
+        let Some(name) = part.file_name().map(clean_name) else {
+            return Err(ApiError::bad_request("a field of the form is no file")
+                .with_remedy("give parameters in the address, such as /api/search?k=5"));
+        };
         let content = part.bytes().await.map_err(faulty)?;
-        match file {
-            // Browsers send this if no file was chosen.
-            Some(file) if file.as_os_str().is_empty() && content.is_empty() => {}
-            Some(file) => upload.files.push((file, content.into())),
-            None if content.len() > LONGEST_FIELD => {
-                let error = format!("a field of the form has more than {LONGEST_FIELD} bytes");
-                return Err(ApiError::bad_request(error));
-            }
-            None => upload.fields.push((name, String::from_utf8_lossy(&content).trim().to_owned())),
+        // Browsers send nothing of this name if no file was chosen.
+        if !(name.as_os_str().is_empty() && content.is_empty()) {
+            files.push((name, content.into()));
         }
     }
-    Ok(upload)
+    Ok(files)
 }
 
 fn form_remedy() -> String {
@@ -137,11 +110,11 @@ fn clean_name(name: &str) -> PathBuf {
     name.chars().skip(skipped).map(clean).collect::<String>().into()
 }
 
-/// The body of a request, shared by its reader and [`drained`].
+/// The body of a request, of which something may be left when the request is answered.
 #[derive(Clone)]
-struct Shared(Arc<Mutex<BodyDataStream>>);
+pub(crate) struct SharedBody(Arc<Mutex<BodyDataStream>>);
 
-impl Stream for Shared {
+impl Stream for SharedBody {
     type Item = Result<Bytes, axum::Error>;
 
     fn poll_next(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<Self::Item>> {
@@ -149,25 +122,29 @@ impl Stream for Shared {
     }
 }
 
-/// Reads and drops the body of a request that is rejected without reading it.
-pub(crate) fn drain(request: Request) {
-    tokio::spawn(drained(request.into_body().into_data_stream()));
-}
+impl SharedBody {
+    /// The request, and its body.
+    pub(crate) fn of(request: Request) -> (Request, Self) {
+        let (head, body) = request.into_parts();
+        let body = Self(Arc::new(Mutex::new(body.into_data_stream())));
+        (Request::from_parts(head, Body::from_stream(body.clone())), body)
+    }
 
-/// Reads on for a while and drops everything: many clients read the response only after they have sent everything, and
-/// not at all if the connection breaks before.
-async fn drained(mut body: impl Stream<Item = Result<Bytes, axum::Error>> + Unpin) {
-    let mut left = REFUSED_BYTES;
-    let draining = async {
-        while let Some(Ok(piece)) = body.next().await {
-            left = left.saturating_sub(piece.len());
-            if left == 0 {
-                break;
+    /// Reads the rest for a while and drops it: many clients read the response only after they have sent everything, and
+    /// not at all if the connection breaks before.
+    pub(crate) async fn drained(mut self) {
+        let mut left = REFUSED_BYTES;
+        let draining = async {
+            while let Some(Ok(piece)) = self.next().await {
+                left = left.saturating_sub(piece.len());
+                if left == 0 {
+                    break;
+                }
             }
-        }
-    };
-    // Both outcomes are fine.
-    let _ = tokio::time::timeout(REFUSED_TIME, draining).await;
+        };
+        // Both outcomes are fine.
+        let _ = tokio::time::timeout(REFUSED_TIME, draining).await;
+    }
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! A bounded number of jobs, and a bounded queue.
+//! A bounded number of jobs, and of seconds that jobs wait.
 
 use std::num::NonZero;
 use std::sync::Arc;
@@ -10,9 +10,6 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use crate::error::ApiError;
 use crate::options::ServeOptions;
 use crate::places::Place;
-
-/// Seconds after which a client that was rejected for the length of the queue may try again.
-pub(crate) const RETRY_AFTER: u32 = 2;
 
 /// Seconds that every job takes, with nothing to measure or to compare.
 const BASE: f64 = 0.1;
@@ -32,7 +29,6 @@ pub(crate) struct Work {
     jobs: Arc<Semaphore>,
     /// Long jobs need a permit of these too, so that one place is left for short ones.
     long_jobs: Arc<Semaphore>,
-    waiting: Arc<Semaphore>,
     /// Of short and of long jobs.
     accepted: [Accepted; 2],
     time_limit: Duration,
@@ -80,7 +76,6 @@ impl Work {
         Self {
             jobs: Arc::new(Semaphore::new(jobs)),
             long_jobs: Arc::new(Semaphore::new(long_jobs)),
-            waiting: Arc::new(Semaphore::new(jobs + options.queue)),
             accepted: [1, long_jobs].map(|places| Accepted::new(places, options.time_limit)),
             time_limit: options.time_limit,
         }
@@ -100,8 +95,6 @@ impl Work {
         held: Option<Place>,
         job: impl FnOnce(&Budget) -> Result<T, ApiError> + Send + 'static,
     ) -> Result<T, ApiError> {
-        let busy = |_| ApiError::busy(RETRY_AFTER);
-        let place = self.waiting.clone().try_acquire_owned().map_err(busy)?;
         let accepted = self.accept(cost)?;
         let budget = Budget::unlimited().with_time(self.time_limit);
         // Dropped at the time limit, and with the connection of a client that has gone.
@@ -113,7 +106,7 @@ impl Work {
             };
             let turn = self.jobs.clone().acquire_owned().await;
             let outcome = tokio::task::spawn_blocking(move || {
-                let _held = (place, accepted, turn, long, held);
+                let _held = (accepted, turn, long, held);
                 job(&budget)
             });
             // The only other outcome is a panic, whose message is already printed.
@@ -169,12 +162,8 @@ mod tests {
 
     #[test]
     fn a_late_job_is_cancelled_and_counts_until_it_ends() {
-        let options = ServeOptions {
-            jobs: 1,
-            queue: 1,
-            time_limit: Duration::from_millis(400),
-            ..ServeOptions::default()
-        };
+        let options =
+            ServeOptions { jobs: 1, time_limit: Duration::from_millis(400), ..ServeOptions::default() };
         let work = Work::new(&options);
         let (finish, finished) = mpsc::channel::<()>();
         runtime().block_on(async {
@@ -213,7 +202,7 @@ mod tests {
 
     #[test]
     fn a_panic_is_an_error_and_frees_its_place() {
-        let work = Work::new(&ServeOptions { jobs: 1, queue: 0, ..ServeOptions::default() });
+        let work = Work::new(&ServeOptions { jobs: 1, ..ServeOptions::default() });
         runtime().block_on(async {
             for _ in 0..3 {
                 let fault = work.run::<()>(0.0, None, |_| panic!("for the test")).await.unwrap_err();

@@ -17,13 +17,23 @@ impl<T: DeserializeOwned, S: Send + Sync> FromRequestParts<S> for Params<T> {
     type Rejection = ApiError;
 
     async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, ApiError> {
-        let found = Query::try_from_uri(&parts.uri);
-        found.map(|Query(params)| Self(params)).map_err(|fault| {
+        Query::try_from_uri(&parts.uri).map(|Query(params)| Self(params)).map_err(|fault| {
             let text = fault.body_text();
-            let what = text.rsplit_once("query string: ").map_or(&text[..], |(_, what)| what);
+            let what = in_words(text.rsplit_once("query string: ").map_or(&text, |(_, what)| what));
             ApiError::bad_request(format!("the parameters of the address are wrong: {what}"))
                 .with_remedy("/api/openapi.json lists them, with their values")
         })
+    }
+}
+
+/// What is wrong with a parameter: its name, and the words of the parser.
+fn in_words(what: &str) -> String {
+    let is_number = |what: &str| ["digit", "integer", "number too"].iter().any(|word| what.contains(word));
+    match (what.split_once(": "), what.strip_prefix("missing field ")) {
+        (_, Some(name)) => format!("{name} is missing"),
+        (Some((name, what)), _) if what.contains("`true` or `false`") => format!("{name}: use true or false"),
+        (Some((name, what)), _) if is_number(what) => format!("{name}: use a whole number, 0 or more"),
+        _ => what.to_owned(),
     }
 }
 

@@ -3,7 +3,6 @@
 mod answer;
 mod compare;
 mod csv;
-mod duplicates;
 mod matching;
 mod search;
 mod shapes;
@@ -38,7 +37,7 @@ pub(crate) fn router() -> Router<Arc<App>> {
         .route("/api/shapes/{id}/thumbnail", get(shapes::thumbnail))
         .route("/api/compare", get(compare::compare))
         .route("/api/match", get(matching::matching))
-        .route("/api/duplicates", get(duplicates::duplicates))
+        .route("/api/duplicates", get(duplicates))
         .route("/api/openapi.json", get(openapi))
         .route("/healthz", get(health))
         .fallback(not_found)
@@ -57,6 +56,11 @@ async fn not_found() -> ApiError {
 async fn wrong_method() -> ApiError {
     ApiError::new(StatusCode::METHOD_NOT_ALLOWED, "method not allowed")
         .with_remedy("see /api/openapi.json for all paths and methods")
+}
+
+/// The duplicates of the index, or how far the search for them is.
+async fn duplicates(State(app): State<Arc<App>>) -> Result<Response, ApiError> {
+    app.duplicates.ask(&app.served.collection())
 }
 
 /// Status, size of the index, and limits.

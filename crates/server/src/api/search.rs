@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
+use axum::Extension;
 use axum::extract::{Request, State};
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
@@ -15,18 +16,20 @@ use canonform::search::{Answer, SearchOptions, SearchRank};
 use canonform::{Budget, Error};
 use report::viewer::Geometry;
 use serde::Deserialize;
-use serde_json::{Map, Value};
 
 use super::answer::{Params, json};
 use super::csv;
 use super::shapes::{is_missing, points};
 use crate::app::{App, Query};
 use crate::collection::Collection;
-use crate::connection::pace_of;
 use crate::cost;
 use crate::error::ApiError;
 use crate::measured::Measured;
-use crate::upload::{Upload, announced, drain, receive};
+use crate::pace::Pace;
+use crate::upload::{Files, announced, receive};
+
+/// Seconds after which a client may send an upload again for which there was no place.
+const RETRY_AFTER: u32 = 2;
 
 /// Maximum number of results.
 const MOST_FOUND: usize = 100;
@@ -65,28 +68,6 @@ struct Wanted {
 }
 
 impl SearchParams {
-    /// With the fields of a form, which go before what the address says.
-    fn with_fields(self, upload: &Upload) -> Result<Self, ApiError> {
-        let value = |text: &String| text.parse().unwrap_or_else(|_| Value::from(text.as_str()));
-        let fields: Map<_, _> =
-            upload.fields.iter().map(|(name, text)| (name.clone(), value(text))).collect();
-        let wrong = |fault: String| {
-            let remedy = "send files, `k`, `explain`, `rank`, `geometry` and `format`";
-            ApiError::bad_request(format!("a field of the form is wrong: {fault}")).with_remedy(remedy)
-        };
-        match Self::deserialize(fields).map_err(|fault| wrong(fault.to_string()))? {
-            Self { shape: None, query: None, k, explain, rank, geometry, format } => Ok(Self {
-                k: k.or(self.k),
-                explain: explain.or(self.explain),
-                rank: rank.or(self.rank),
-                geometry: geometry.or(self.geometry),
-                format: format.or(self.format),
-                ..self
-            }),
-            _ => Err(wrong("the file is the query".to_owned())),
-        }
-    }
-
     fn wanted(&self) -> Result<Wanted, ApiError> {
         let k = self.k.unwrap_or(SearchOptions::default().k);
         if !(1..=MOST_FOUND).contains(&k) {
@@ -137,31 +118,25 @@ impl Wanted {
     }
 }
 
-/// Searches with an upload, or with a shape of the index or an earlier upload.
+/// Searches with an upload.
 pub(super) async fn search(
     State(app): State<Arc<App>>,
+    Extension(pace): Extension<Arc<Pace>>,
     Params(params): Params<SearchParams>,
     request: Request,
 ) -> Result<Response, ApiError> {
+    let wanted = params.wanted()?;
     if params.shape.is_some() || params.query.is_some() {
-        return again(app, params).await;
+        return Err(ApiError::bad_request("`shape` and `query` are for GET; the file is the query"));
     }
     // Only to learn whether it would be.
-    if let Err(busy) = app.work.accept(announced(&request) as f64 * cost::UPLOADED_BYTE) {
-        drain(request);
-        return Err(busy);
-    }
-    let pace = pace_of(&request).ok_or_else(ApiError::internal)?;
-    let Some(place) = app.uploads.try_enter(&pace) else {
-        drain(request);
-        return Err(ApiError::busy(crate::work::RETRY_AFTER));
-    };
-    let upload = receive(request, &place, &pace, &app.options).await?;
-    let wanted = params.with_fields(&upload)?.wanted()?;
-    let (shared, bytes) = (app.clone(), upload.bytes());
+    drop(app.work.accept(announced(&request) as f64 * cost::UPLOADED_BYTE)?);
+    let place = app.uploads.try_enter(&pace).ok_or_else(|| ApiError::busy(RETRY_AFTER))?;
+    let files = receive(request, &place, &pace, &app.options).await?;
+    let (shared, bytes) = (app.clone(), files.iter().map(|(_, content)| content.len()).sum::<usize>());
     let vertices = (bytes / VERTEX_BYTES) as u64;
     let searching = app.served.collection().search_cost(&wanted.options, vertices);
-    let answer = move |budget: &Budget| with_upload(&shared, upload, &wanted, budget);
+    let answer = move |budget: &Budget| with_upload(&shared, files, &wanted, budget);
     app.work.run(bytes as f64 * cost::UPLOADED_BYTE + searching, Some(place), answer).await
 }
 
@@ -170,10 +145,6 @@ pub(super) async fn search_again(
     State(app): State<Arc<App>>,
     Params(params): Params<SearchParams>,
 ) -> Result<Response, ApiError> {
-    again(app, params).await
-}
-
-async fn again(app: Arc<App>, params: SearchParams) -> Result<Response, ApiError> {
     let wanted = params.wanted()?;
     let (shared, collection) = (app.clone(), app.served.collection());
     match (params.shape, params.query) {
@@ -217,19 +188,27 @@ fn with_shape(
     wanted.written(collection, id, None, answer, drawn)
 }
 
-fn with_upload(app: &App, upload: Upload, wanted: &Wanted, budget: &Budget) -> Result<Response, ApiError> {
-    let Some(name) = upload.files.first().map(|(name, _)| name.clone()) else {
-        let remedy = format!("send one mesh, {}; or name a shape of the index with ?shape=", mesh_files());
+fn with_upload(app: &App, files: Files, wanted: &Wanted, budget: &Budget) -> Result<Response, ApiError> {
+    let Some(name) = files.first().map(|(name, _)| name.clone()) else {
+        let remedy =
+            format!("send one mesh, {}; or name a shape of the index with GET and ?shape=", mesh_files());
         return Err(ApiError::bad_request("the request has no file").with_remedy(remedy));
     };
     let start = Instant::now();
     let collection = app.served.collection();
-    let upload = unpacked(upload, app.options.max_upload as u64)?;
-    let address = App::address(&upload.files);
+    // The mesh of an archive instead of the archive.
+    let files = match &files[..] {
+        [(name, bytes)] if is_archive_name(name) => {
+            single_mesh(name, bytes, app.options.max_upload as u64)
+                .map_err(|fault| ApiError::of_upload(name, fault.into()))?
+        }
+        _ => files,
+    };
+    let address = App::address(&files);
     let query = match app.kept(&collection, &address) {
         Some(known) => known,
         None => {
-            let query = measure(app, &collection, upload, budget);
+            let query = measure(app, &collection, files, budget);
             let query = Arc::new(query.map_err(|fault| ApiError::of_upload(&name, fault))?);
             app.keep(address.clone(), query.clone());
             query
@@ -242,25 +221,13 @@ fn with_upload(app: &App, upload: Upload, wanted: &Wanted, budget: &Budget) -> R
     wanted.written(&collection, name, Some(&address), answer, (Some(drawn), None))
 }
 
-/// The upload with the mesh of an archive instead of the archive.
-fn unpacked(upload: Upload, most: u64) -> Result<Upload, ApiError> {
-    match &upload.files[..] {
-        [(name, bytes)] if is_archive_name(name) => {
-            let files =
-                single_mesh(name, bytes, most).map_err(|fault| ApiError::of_upload(name, fault.into()))?;
-            Ok(Upload { files, ..upload })
-        }
-        _ => Ok(upload),
-    }
-}
-
-fn measure(app: &App, collection: &Collection, upload: Upload, budget: &Budget) -> Result<Query, Error> {
-    let files: Vec<MemoryFile<'_>> =
-        upload.files.iter().map(|(name, bytes)| MemoryFile { name: Path::new(name), bytes }).collect();
-    let name = files.first().map(|file| file.name.display().to_string()).unwrap_or_default();
-    let mesh = read_memory(&files, &ReadLimits::of_vertices(app.options.max_vertices))?;
-    let content = content_of(&files);
-    drop(upload);
+fn measure(app: &App, collection: &Collection, files: Files, budget: &Budget) -> Result<Query, Error> {
+    let in_memory: Vec<MemoryFile<'_>> =
+        files.iter().map(|(name, bytes)| MemoryFile { name: Path::new(name), bytes }).collect();
+    let name = in_memory.first().map(|file| file.name.display().to_string()).unwrap_or_default();
+    let mesh = read_memory(&in_memory, &ReadLimits::of_vertices(app.options.max_vertices))?;
+    let content = content_of(&in_memory);
+    drop(files);
     let describe = collection.search.describe_options();
     let (measured, embedded) = Measured::new(&mesh, content, &describe.form, budget)?;
     let described = canonform::search::Query::new(embedded.describe(describe, budget)?, describe);

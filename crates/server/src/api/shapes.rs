@@ -7,6 +7,7 @@ use axum::extract::State;
 use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
 use base::object;
+use canonform::index::{Entry, Facts};
 use canonform::mesh::TriMesh;
 use canonform::{Budget, Error};
 use report::render::{Background, RenderOptions, View, render};
@@ -15,7 +16,7 @@ use serde::Deserialize;
 
 use super::answer::{Id, Params, is_known, json, tag, tagged};
 use crate::app::App;
-use crate::collection::{Collection, ShapeSummary};
+use crate::collection::Collection;
 use crate::cost;
 use crate::error::ApiError;
 use crate::measured::dots;
@@ -40,8 +41,6 @@ pub(super) struct ListParams {
     #[serde(default)]
     q: String,
     label: Option<String>,
-    /// Instead of a page: this many shapes, of as many classes as possible.
-    sample: Option<usize>,
 }
 
 pub(super) async fn list(
@@ -54,22 +53,16 @@ pub(super) async fn list(
         return Err(ApiError::bad_request(error));
     }
     let collection = app.served.collection();
-    if let Some(n) = params.sample {
-        if !(1..=MOST_LISTED).contains(&n) {
-            return Err(ApiError::bad_request(format!("sample is {n}; use 1 to {MOST_LISTED}")));
-        }
-        let (total, shapes) = (collection.shapes.len(), collection.sample(n));
-        return json(&object! { total, offset: 0, shapes });
-    }
     let part = params.q.to_lowercase();
-    let is_meant = |shape: &&ShapeSummary| {
+    let is_meant = |shape: &&Entry| {
         params.label.as_ref().is_none_or(|label| *label == shape.label)
             && (shape.id.to_lowercase().contains(&part) || shape.label.to_lowercase().contains(&part))
     };
     let (mut total, mut shapes) = (0, Vec::new());
     for shape in collection.shapes.iter().filter(is_meant) {
         if total >= params.offset && shapes.len() < limit {
-            shapes.push(shape);
+            let Facts { vertices, faces, area, diameter, .. } = shape.facts;
+            shapes.push(object! { id: &shape.id, label: &shape.label, vertices, faces, area, diameter });
         }
         total += 1;
     }

@@ -40,8 +40,6 @@ export class Ask {
     if (files.length === 0) return;
     const form = new FormData();
     for (const file of files) form.append('mesh', file, file.name);
-    form.append('k', byId('k').value);
-    form.append('rank', byId('rank').value);
     const size = files.reduce((sum, file) => sum + file.size, 0);
     const name = files.map((file) => file.name).join(' and ');
     if (size > this.maxUpload) {
@@ -50,7 +48,8 @@ export class Ask {
         'simplify the mesh, or raise the upload limit of the server');
       return;
     }
-    this.send('POST', '/api/search', form, name);
+    const params = new URLSearchParams({ k: byId('k').value, rank: byId('rank').value });
+    this.send('POST', `/api/search?${params}`, form, name);
   }
 
   // A search that needs no upload.

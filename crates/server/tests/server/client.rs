@@ -74,7 +74,7 @@ pub(crate) fn upload_head(address: SocketAddr, boundary: &str, length: usize) ->
 }
 
 /// A form with files, and its boundary.
-pub(crate) fn form(files: &[(&str, &[u8])], fields: &[(&str, &str)]) -> (Vec<u8>, &'static str) {
+pub(crate) fn form(files: &[(&str, &[u8])]) -> (Vec<u8>, &'static str) {
     const BOUNDARY: &str = "a-line-that-is-in-no-mesh";
     let mut body = Vec::new();
     for (name, content) in files {
@@ -87,11 +87,6 @@ pub(crate) fn form(files: &[(&str, &[u8])], fields: &[(&str, &str)]) -> (Vec<u8>
         );
         body.extend_from_slice(content);
         body.extend(b"\r\n");
-    }
-    for (name, text) in fields {
-        let field =
-            format!("--{BOUNDARY}\r\nContent-Disposition: form-data; name=\"{name}\"\r\n\r\n{text}\r\n");
-        body.extend(field.bytes());
     }
     body.extend(format!("--{BOUNDARY}--\r\n").bytes());
     (body, BOUNDARY)
@@ -125,9 +120,11 @@ pub(crate) fn ask(
 pub(crate) fn upload(
     address: SocketAddr,
     files: &[(&str, &[u8])],
-    fields: &[(&str, &str)],
+    parameters: &[(&str, &str)],
 ) -> io::Result<Answer> {
-    let (body, boundary) = form(files, fields);
+    let (body, boundary) = form(files);
     let kind = format!("multipart/form-data; boundary={boundary}");
-    ask(address, "POST", "/api/search", &[("Content-Type", &kind)], &body)
+    let parameters: Vec<String> = parameters.iter().map(|(name, value)| format!("{name}={value}")).collect();
+    let target = format!("/api/search?{}", parameters.join("&"));
+    ask(address, "POST", &target, &[("Content-Type", &kind)], &body)
 }

@@ -94,12 +94,13 @@ fn meshes_that_the_command_line_refuses_are_refused_in_its_words() {
 fn bad_forms_get_an_error() {
     let server = Served::start(options());
     let mesh = fs::read(server.mesh("ring0")).unwrap();
-    let (body, boundary) = form(&[("q.off", &mesh)], &[]);
+    let (body, boundary) = form(&[("q.off", &mesh)]);
     let multipart = format!("multipart/form-data; boundary={boundary}");
     let post = |kind: &str, body: &[u8]| {
         ask(server.address, "POST", "/api/search", &[("Content-Type", kind)], body).unwrap()
     };
-    let parts = "--x\r\nContent-Disposition: form-data; name=\"a\"\r\n\r\n\r\n".repeat(1000);
+    let field = "--x\r\nContent-Disposition: form-data; name=\"k\"\r\n\r\n3\r\n--x--";
+    let parts = field.replace("--x--", "").replace("\"k\"", "\"k\"; filename=\"a.off\"").repeat(1000);
     let headers = format!("--x\r\n{}\r\n\r\n", "A: b\r\n".repeat(10_000));
     for (what, kind, body) in [
         ("no form", "application/json", &b"{}"[..]),
@@ -107,23 +108,25 @@ fn bad_forms_get_an_error() {
         ("no end", &multipart, &body[..body.len() / 2]),
         ("nothing", &multipart, b""),
         ("no parts", "multipart/form-data; boundary=x", b"--x--\r\n"),
-        ("many parts", "multipart/form-data; boundary=x", parts.as_bytes()),
+        ("a field", "multipart/form-data; boundary=x", field.as_bytes()),
+        ("many files", "multipart/form-data; boundary=x", parts.as_bytes()),
         ("many headers", "multipart/form-data; boundary=x", headers.as_bytes()),
     ] {
         check(what, &post(kind, body));
     }
     let mesh = [("q.off", &mesh[..])];
     let long = "x".repeat(2000);
-    for field in [("k", "0"), ("k", "101"), ("k", "x"), ("explain", "perhaps"), ("other", "1"), ("k", &long)]
+    for parameter in
+        [("k", "0"), ("k", "101"), ("k", "x"), ("explain", "perhaps"), ("other", "1"), ("k", &long)]
     {
-        check(field.0, &upload(server.address, &mesh, &[field]).unwrap());
+        check(parameter.0, &upload(server.address, &mesh, &[parameter]).unwrap());
     }
     check("no file", &upload(server.address, &[], &[("k", "3")]).unwrap());
     check("an empty choice", &upload(server.address, &[("", b"")], &[]).unwrap());
-    let wrong = ask(server.address, "POST", "/api/search?shape=ring0&k=-1", &[], b"").unwrap();
+    let wrong = ask(server.address, "POST", "/api/search?k=-1", &[], b"").unwrap();
     check("a negative number", &wrong);
     let json = wrong.json();
-    assert!(json["error"].as_str().unwrap().starts_with("the parameters of the address are wrong: k: "));
+    assert!(json["error"].as_str().unwrap().ends_with(" k: use a whole number, 0 or more"), "{json}");
     assert!(json["remedy"].as_str().unwrap().starts_with("/api/openapi.json"), "{json}");
     still_serves(&server);
 }

@@ -135,8 +135,8 @@ fn the_proxy_of_the_guide_passes_requests_on() {
     let form = format!("mesh=@{}", file.display());
     let upload = |headers: &[&str]| {
         let headers = headers.iter().flat_map(|header| ["-H", *header]);
-        let arguments: Vec<&str> = ["-F", &form, "-F", "geometry=false"].into_iter().chain(headers).collect();
-        ask("/api/search", &arguments)
+        let arguments: Vec<&str> = ["-F", &form].into_iter().chain(headers).collect();
+        ask("/api/search?geometry=false", &arguments)
     };
     let own = format!("Origin: https://{NAME}:{}", proxy.port);
     for (headers, expected) in [
