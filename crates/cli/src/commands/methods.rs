@@ -14,7 +14,7 @@ use canonform::settings::MethodSettings;
 use canonform::{Error, Observer, Surface};
 use serde::Serialize;
 
-use super::embed::normalized_text;
+use super::embed::estimated;
 use crate::args::{Common, MethodsArgs};
 use crate::input::{named, read_surface};
 use crate::output::{report, table_of};
@@ -146,7 +146,11 @@ const COLUMNS: [&str; 6] =
 fn cells(facts: &MethodFacts) -> [(String, Option<f64>); 6] {
     let (stress, seconds, bytes) = (facts.stress.as_ref(), facts.seconds, facts.peak_bytes);
     [
-        (stress.map_or_else(|| "no unit".to_owned(), normalized_text), stress.map(|s| s.normalized)),
+        (
+            stress
+                .map_or_else(|| "no unit".to_owned(), |s| estimated(s.normalized, s.normalized_interval, 4)),
+            stress.map(|s| s.normalized),
+        ),
         (report::numbers::seconds(seconds), Some(seconds)),
         (report::numbers::bytes(bytes), Some(bytes as f64)),
         (facts.n_samples.to_string(), None),

@@ -1,48 +1,30 @@
 //! `canonform embed`.
 
-use std::path::{Path, PathBuf};
+mod words;
+
+pub(super) use self::words::estimated;
+
+use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
 use base::object;
 use base::terminal::Bars;
 use canonform::collection::ShapeFile;
-use canonform::embed::{
-    EmbedMethod, EmbedOptions, EmbedReport, Embedded, StressKind, StressOptions, StressReport,
-    embed as embed_surface,
-};
+use canonform::embed::{EmbedMethod, EmbedOptions, Embedded, StressOptions, embed as embed_surface};
 use canonform::linalg::Matrix;
+use canonform::mesh::InputMap;
 use canonform::mesh::io::{extension, or_list};
-use canonform::mesh::{InputMap, InputPoint};
-use canonform::nmds::{SampleStop, SmacofStop};
 use canonform::settings::MarchingSettings;
 use canonform::surface::VertexId;
 use canonform::{Budget, Surface};
-use serde::Serialize;
 
+use self::words::{EmbedJson, PointJson, answer, stresses, warn};
 use crate::args::{Common, EmbedArgs, FORM_FORMATS, LimitArgs};
 use crate::batch::Results;
 use crate::input::{check_there, is_single, is_stream, named, print_repair, read_both, read_surface};
-use crate::output::{Answer, Output, exit_code, report, row_of, shown, table_of};
+use crate::output::{Output, exit_code, report, row_of, shown, table_of};
 use crate::table::write_npy;
-
-#[derive(Serialize)]
-struct EmbedJson {
-    #[serde(flatten)]
-    report: EmbedReport,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    points: Vec<PointJson>,
-    /// Whether the output is the mesh bent into its form.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    features: bool,
-    output: PathBuf,
-}
-
-#[derive(Serialize)]
-struct PointJson {
-    at: InputPoint,
-    coordinates: Vec<f64>,
-}
 
 /// Embeds one mesh, or each of several.
 pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
@@ -185,15 +167,9 @@ fn batch(args: &EmbedArgs, options: &EmbedOptions<'_>, common: &Common) -> Resul
         let mut table = table_of(header);
         for shape in &json.shapes {
             let r = &shape.result.report;
-            table.add_row(row_of([
-                shape.name.clone(),
-                shape.label.clone(),
-                r.n_embedded.to_string(),
-                r.n_samples.to_string(),
-                stress_text(r),
-                normalized_or_none(r),
-                format!("{:.3}", r.seconds.total),
-            ]));
+            let [n, samples] = [r.n_embedded, r.n_samples].map(|n| n.to_string());
+            let ([stress, normalized], seconds) = (stresses(r), format!("{:.3}", r.seconds.total));
+            table.add_row(row_of([&shape.name, &shape.label, &n, &samples, &stress, &normalized, &seconds]));
         }
         format!("{table}\n{}", results.counts(json.shapes.len(), &json.failed))
     })?;
@@ -219,110 +195,4 @@ fn write(output: &Path, map: &InputMap, coords: &Matrix) -> Result<()> {
     }
     let position = |v: VertexId| [0, 1, 2].map(|axis| coords[(v.index(), axis)]).into();
     Ok(canonform::mesh::io::write(output, &map.with_positions(position))?)
-}
-
-/// Warns about dimensions without a positive eigenvalue.
-fn warn(name: &str, report: &EmbedReport) {
-    if report.empty_dimensions > 0 {
-        base::terminal::note(&format!(
-            "{name}: {} of {} dimensions have no positive eigenvalue and are zero; take more samples with -n",
-            report.empty_dimensions, report.dim
-        ));
-    }
-}
-
-fn stress_text(report: &EmbedReport) -> String {
-    match &report.stress {
-        None => "-".to_owned(),
-        Some(s) if s.interval[0] == s.interval[1] => format!("{:.6}", s.value),
-        Some(s) => {
-            let [low, high] = s.interval;
-            format!("{:.6} (95 %: {low:.6} to {high:.6}, from {} rows)", s.value, s.rows)
-        }
-    }
-}
-
-/// The normalized stress, with its interval if it is estimated.
-pub(super) fn normalized_text(stress: &StressReport) -> String {
-    let value = format!("{:.4}", stress.normalized);
-    match stress.kind {
-        StressKind::Exact => value,
-        StressKind::Estimated => {
-            let [low, high] = stress.normalized_interval;
-            format!("{value} (95 %: {low:.4} to {high:.4})")
-        }
-    }
-}
-
-fn normalized_or_none(report: &EmbedReport) -> String {
-    report.stress.as_ref().map_or_else(|| "-".to_owned(), normalized_text)
-}
-
-/// The number of samples and the rank, and how they were found.
-fn samples_text(report: &EmbedReport) -> String {
-    let numbers = format!("{}, {}", report.n_samples, report.rank);
-    let Some(search) = &report.auto else { return numbers };
-    let why = match search.stop {
-        SampleStop::Settled => format!("{} are within 1 %", search.sufficient),
-        SampleStop::AllPoints => "all vertices".to_owned(),
-        SampleStop::Limit => "the most that are taken".to_owned(),
-    };
-    format!("{numbers} ({why}; chosen on {} rows)", search.rows)
-}
-
-/// The method and its options.
-fn method_text(report: &EmbedReport) -> String {
-    let regularization = report.regularization.map_or(String::new(), |name| format!(" ({name})"));
-    let sampling = report.sampling.map_or(String::new(), |name| format!(", {name} samples"));
-    let descent = report.descent.as_ref().map_or(String::new(), |descent| {
-        let stop = match descent.stop {
-            SmacofStop::Converged => "converged",
-            SmacofStop::IterationLimit => "iteration-limit",
-        };
-        format!(", {} steps ({stop})", descent.iterations)
-    });
-    format!("{}{regularization} on {} distances{sampling}{descent}", report.method, report.geodesic)
-}
-
-fn answer(json: &EmbedJson) -> Answer {
-    let r = &json.report;
-    let (output, n_vertices) = (shown(&json.output), r.n_vertices);
-    let off = r.stress.as_ref().filter(|_| !json.features).map_or_else(String::new, |stress| {
-        let [low, high] = stress.normalized_interval.map(|end| 100.0 * end);
-        let interval = match stress.kind {
-            StressKind::Exact => String::new(),
-            StressKind::Estimated => format!(" ({low:.1} to {high:.1} %)"),
-        };
-        format!(
-            "; its distances differ from those along the surface by {:.1} %{interval}",
-            100.0 * stress.normalized
-        )
-    });
-    let eigenvalues: Vec<String> = r.eigenvalues.iter().take(r.dim).map(|v| format!("{v:.5e}")).collect();
-    let places = json.points.iter().map(|point| {
-        let coordinates: Vec<String> = point.coordinates.iter().map(|x| format!("{x:.6}")).collect();
-        ("point", format!("{} at {}", point.at, coordinates.join(" ")))
-    });
-    let facts = [
-        ("method", method_text(r)),
-        ("normalized stress", normalized_or_none(r)),
-        ("seconds", format!("{:.3}", r.seconds.total)),
-    ];
-    Answer {
-        sentence: match json.features {
-            true => format!("{output} holds the mesh of {n_vertices} vertices, bent into its canonical form"),
-            false => format!("{output} holds the canonical form of {n_vertices} vertices{off}"),
-        },
-        facts: facts.into_iter().chain(places).collect(),
-        details: vec![
-            ("vertices, faces", format!("{}, {}", r.n_vertices, r.n_faces)),
-            ("samples, rank", samples_text(r)),
-            ("eigenvalues", eigenvalues.join(" ")),
-            ("negative mass", format!("{:.4}", r.negative_mass)),
-            ("stress", stress_text(r)),
-            ("seconds for distances", format!("{:.3}", r.seconds.geodesics)),
-            ("seconds for embedding", format!("{:.3}", r.seconds.embedding)),
-            ("seconds for stress", format!("{:.3}", r.seconds.stress)),
-        ],
-    }
 }
