@@ -133,8 +133,7 @@ impl Output {
     ) -> Result<Self> {
         let name = path.to_owned();
         if !is_stream(path) {
-            let format = check_format(path, what, formats)?;
-            check_output(path)?;
+            let format = check_output(path, what, formats)?;
             return Ok(Self { path: name.clone(), name, format, scratch: None });
         }
         if common.json {
@@ -193,33 +192,29 @@ pub(crate) fn check_format(path: &Path, what: &str, formats: &[&str]) -> Result<
     if is_gzip(path) && !is_mesh(&format) {
         bail!("{}: {what} cannot be written compressed; leave out .gz", path.display());
     }
-    if path.is_dir() {
-        bail!(
-            "cannot write {}: it is a folder; name a file for {what}, such as {}",
-            path.display(),
-            path.join(format!("name.{}", formats[0])).display()
-        );
-    }
     if !formats.contains(&format.as_str()) {
         bail!("{}: unsupported format for {what}; use {}", path.display(), or_list(formats.iter().copied()));
     }
     Ok(format)
 }
 
-/// Refuses an output file that would take the place of an input, or in a folder that does not exist, before any work is done.
-pub(crate) fn check_output(path: &Path) -> Result<()> {
+/// The extension of an output file, which must be one of `formats` if there are any. Refuses a folder, a file that would take the
+/// place of an input, and one in a folder that does not exist, before any work is done.
+pub(crate) fn check_output(path: &Path, what: &str, formats: &[&str]) -> Result<String> {
+    let shown = path.display();
+    if path.is_dir() {
+        let name = path.join(["name", formats.first().unwrap_or(&"file")].join("."));
+        bail!("cannot write {shown}: it is a folder; name a file for {what}, such as {}", name.display());
+    }
+    let format = if formats.is_empty() { extension(path) } else { check_format(path, what, formats)? };
     if files_of(path).iter().any(|file| base::files::is_input(file)) {
-        bail!("{}: the result would overwrite an input; choose another name for it", path.display());
+        bail!("{shown}: the result would overwrite an input; choose another name for it");
     }
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
-            bail!(
-                "cannot write {}: the folder {} does not exist; create it first",
-                path.display(),
-                folder.display()
-            )
+            bail!("cannot write {shown}: the folder {} does not exist; create it first", folder.display())
         }
-        _ => Ok(()),
+        _ => Ok(format),
     }
 }
 

@@ -13,7 +13,7 @@ pub enum RetrievalError {
     },
     /// No class has more than two members.
     #[error(
-        "nothing to score: no class has more than 2 shapes ({n_points} shapes in {n_classes} classes); \
+        "nothing to score: of {n_points} shapes, no 3 are of one class, which at least one class needs (classes: {n_classes}); \
          check the labels"
     )]
     NothingToScore {

@@ -158,7 +158,7 @@ pub struct BuildReport {
     pub skipped: BTreeMap<String, usize>,
     /// What was skipped although its name is that of a mesh or a folder.
     #[serde(serialize_with = "as_text")]
-    pub skipped_paths: Vec<PathBuf>,
+    pub skipped_paths: Vec<Skipped>,
     /// Whether an index was replaced that is damaged or of a past version; `NAME.damaged` keeps it.
     pub replaced_damaged: bool,
     /// Whether an interrupted run was resumed.
@@ -172,8 +172,8 @@ pub struct BuildReport {
 }
 
 /// JSON has no names that are not UTF-8.
-fn as_text<S: Serializer>(paths: &[PathBuf], out: S) -> Result<S::Ok, S::Error> {
-    out.collect_seq(paths.iter().map(|path| path.to_string_lossy()))
+fn as_text<S: Serializer>(skipped: &[Skipped], out: S) -> Result<S::Ok, S::Error> {
+    out.collect_seq(skipped.iter().map(|it| it.path.to_string_lossy()))
 }
 
 impl BuildReport {
@@ -188,7 +188,7 @@ impl BuildReport {
             unused_labels: listing.unused_labels.len(),
             unused_label_lines: listing.unused_labels.clone(),
             skipped: count_skipped(&listing.skipped),
-            skipped_paths: unexpected.map(|skipped| skipped.path.clone()).collect(),
+            skipped_paths: unexpected.cloned().collect(),
             ..Self::default()
         }
     }

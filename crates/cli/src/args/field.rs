@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use canonform::fields::Finish;
 use canonform::settings::{Geodesic, MarchingSettings};
-use clap::{Args, Subcommand};
+use clap::{ArgGroup, Args, Subcommand};
 
 use super::settings::RepairArgs;
 use super::shared::{LimitArgs, counted};
@@ -72,14 +72,15 @@ Examples:
 
 #[derive(Debug, Args)]
 #[command(after_long_help = ANSWERS, after_help = "See `--help-all` for how to write pairs, and for examples.")]
+#[command(group(ArgGroup::new("wanted").args(["pairs", "source"]).required(true)))]
 pub(crate) struct FieldQueryArgs {
     /// The field
     pub(crate) field: PathBuf,
     /// File of pairs of vertices, .csv, .txt or .npy, or `-` for text from standard input
-    #[arg(long, value_name = "FILE", required_unless_present = "source")]
+    #[arg(long, value_name = "FILE")]
     pub(crate) pairs: Option<PathBuf>,
     /// Vertices; the distances from each to all vertices
-    #[arg(long, value_name = "V[,V...]", value_delimiter = ',', value_parser = counted::<u32>, conflicts_with = "pairs")]
+    #[arg(long, value_name = "V[,V...]", value_delimiter = ',', value_parser = counted::<u32>)]
     pub(crate) source: Vec<u32>,
     /// Only the K vertices nearest to each source, exactly
     #[arg(long, value_name = "K", requires = "source")]

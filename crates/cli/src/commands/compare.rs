@@ -8,12 +8,12 @@ use canonform::collection::content_hash;
 use canonform::compare::{ComparedMesh, FaceAgreement, MeshComparison, Residual, compare_meshes};
 use canonform::descriptors::ShapeMetric;
 use canonform::mesh::io::{Content, writable};
-use canonform::relations::RelationKind;
+use canonform::relations::{RelationKind, in_four_digits};
 use canonform::rigid::Handedness;
 
 use crate::args::{Common, CompareArgs, PairArgs};
 use crate::input::{file_name, is_stream, read_pair};
-use crate::output::{Fact, check_format, check_output, facts, report, write_colored};
+use crate::output::{Fact, check_output, facts, report, write_colored};
 
 /// What the two meshes are called: by their files, or by their paths if the files have one name.
 fn names(PairArgs { a: path_a, b: path_b }: &PairArgs) -> [String; 2] {
@@ -29,8 +29,7 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     let options = args.form.options(&args.method, common)?;
     options.validate()?;
     if let Some(path) = &args.residual_mesh {
-        check_format(path, "a colored mesh", &writable(Content::Field).collect::<Vec<_>>())?;
-        check_output(path)?;
+        check_output(path, "a colored mesh", &writable(Content::Field).collect::<Vec<_>>())?;
     }
     let [a, b] =
         read_pair(&args.pair, &args.form.repair, &args.limits, common, |path, mesh, surface, bars| {
@@ -53,9 +52,10 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     let max_vertex = a.surface().input_vertex(residual.max_point.into()).0;
     let relation = &found.relation;
     let (shape, [_, class]) = (ShapeMetric::SAME_SHAPE.at, ShapeMetric::SAME_CLASS.gap());
-    let times = format!("{:.4}", relation.evidence.scale);
-    let size =
-        if times == "1.0000" { "the same".to_owned() } else { format!("{times} times that of {name_a}") };
+    let size = match &*in_four_digits(relation.evidence.scale) {
+        "1" => "the same".to_owned(),
+        times => format!("{times} times that of {name_a}"),
+    };
     let limits = format!("probably one shape below {shape:.2}, not alike above {class:.2}");
     let last = match args.threshold {
         Some(limit) => {
@@ -124,7 +124,7 @@ fn detailed(found: &MeshComparison, vertex: u32) -> Vec<Fact> {
             format!("{:.6} mesh units, {:.6} at equal size", c.distance, c.normalized_distance),
         ),
         ("by signatures alone", format!("{:.6}", c.shape_distance.fused)),
-        ("scale, second over first", format!("{:.6}", c.scale)),
+        ("scale, second over first", in_four_digits(c.scale)),
         ("mirror image", handedness.to_owned()),
         ("triangulation", triangulation.to_owned()),
         ("residual", format!("median {median:.6}, maximum {max:.6} (at vertex {vertex}), mesh units")),

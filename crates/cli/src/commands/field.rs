@@ -12,7 +12,7 @@ use canonform::surface::VertexId;
 
 use crate::args::{Common, FieldBuildArgs, FieldCommand, FieldQueryArgs, geodesic_method};
 use crate::input::{named, read_surface};
-use crate::output::{Answer, check_format, check_output, report};
+use crate::output::{Answer, check_output, report};
 use crate::table::{read_pairs, write_npy};
 
 pub(crate) fn field(command: &FieldCommand, common: &Common) -> Result<ExitCode> {
@@ -25,7 +25,7 @@ pub(crate) fn field(command: &FieldCommand, common: &Common) -> Result<ExitCode>
 
 /// Builds, writes and reports a field.
 fn build(args: &FieldBuildArgs, common: &Common) -> Result<ExitCode> {
-    check_output(&args.output)?;
+    check_output(&args.output, "a field", &[])?;
     let method = geodesic_method(&args.marching, args.method)?;
     let surface = read_surface(&args.mesh, &args.repair, common)?;
     let options = FieldOptions { method, landmarks: args.landmarks, rank: args.rank };
@@ -85,8 +85,7 @@ fn answer(path: &Path, facts: &FieldFacts) -> Answer {
 /// Looks up, writes and reports distances.
 fn query(args: &FieldQueryArgs, common: &Common) -> Result<ExitCode> {
     if let Some(output) = &args.output {
-        check_format(output, "distances", &["csv", "npy"])?;
-        check_output(output)?;
+        check_output(output, "distances", &["csv", "npy"])?;
     }
     let start = Instant::now();
     let field = DistanceField::open(&args.field).map_err(canonform::Error::from)?;

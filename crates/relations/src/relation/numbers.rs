@@ -18,9 +18,12 @@ pub fn in_four_digits(x: f64) -> String {
 
 /// A number with so many significant digits and no zeros at the end.
 pub(super) fn in_digits(n: u32, x: f64) -> String {
-    let digits =
-        (f64::from(n) - 1.0 - x.abs().max(f64::MIN_POSITIVE).log10().floor()).clamp(0.0, 9.0) as usize;
-    let text = format!("{x:.digits$}");
+    let digits = f64::from(n) - 1.0 - x.abs().max(f64::MIN_POSITIVE).log10().floor();
+    if digits > 9.0 && x != 0.0 {
+        let rounded: f64 = format!("{x:.*e}", n as usize - 1).parse().unwrap_or(x);
+        return format!("{rounded:e}");
+    }
+    let text = format!("{x:.*}", digits.clamp(0.0, 9.0) as usize);
     match text.contains('.') {
         true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
         false => text,
@@ -43,6 +46,7 @@ mod tests {
     fn numbers_are_short() {
         let shown = [25.4, 1000.0, 0.001, 1.0 / 25.4, 2.0 / 3.0, 123_456.7].map(|x| in_digits(5, x));
         assert_eq!(shown, ["25.4", "1000", "0.001", "0.03937", "0.66667", "123457"]);
+        assert_eq!([1e-12, 1.23456e-7, 0.0].map(in_four_digits), ["1e-12", "1.235e-7", "0"]);
         assert_eq!([0.5, 0.0312, 0.0025].map(percent), ["50 %", "3.1 %", "0.25 %"]);
         assert_eq!([0, 6, 13].map(in_words), ["no", "six", "13"]);
     }

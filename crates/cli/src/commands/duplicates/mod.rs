@@ -33,7 +33,7 @@ pub(crate) fn duplicates(args: &DuplicatesArgs, common: &Common) -> Result<ExitC
     }
     args.inputs.iter().filter(|input| input.is_file()).for_each(|input| keep_inputs(input));
     for path in [&args.csv, &args.html].into_iter().flatten() {
-        check_output(path)?;
+        check_output(path, "duplicates", &[])?;
     }
     let index = args.inputs.iter().find(|input| !(is_dataset(input) || is_mesh_path(input)));
     if let (Some(index), true) = (index, args.move_to.is_some() || args.inputs.len() > 1) {

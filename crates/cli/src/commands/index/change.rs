@@ -20,7 +20,7 @@ use crate::output::{Answer, check_output, count, exit_code, report, shown};
 use crate::remedy::with_remedy;
 
 pub(super) fn build(args: &BuildArgs, common: &Common) -> Result<ExitCode> {
-    check_output(&args.output)?;
+    check_output(&args.output, "an index", &[])?;
     let labels = args.labels.as_deref().map(LabelSource::read).transpose()?;
     let describe = args.description.options(args.form.options(&args.method, common)?);
     let options = BuildOptions {
@@ -114,7 +114,8 @@ fn notes(index: &Path, built: &BuildReport, labels: Option<&LabelSource>) -> Vec
 /// What was skipped although it may hold meshes.
 pub(crate) fn skipped(built: &BuildReport) -> Vec<String> {
     let skipped = &built.skipped_paths;
-    let named = skipped.iter().take(MOST_NAMED).map(|path| format!("warning: skipped {}", path.display()));
+    let named = skipped.iter().take(MOST_NAMED);
+    let named = named.map(|it| format!("warning: skipped {}: {}", it.path.display(), it.kind));
     let more = skipped.len().checked_sub(MOST_NAMED).filter(|more| *more > 0);
     named.chain(more.map(|more| format!("warning: skipped {more} more"))).collect()
 }
@@ -207,7 +208,7 @@ pub(super) fn remove(index: &Path, ids: &[String], common: &Common) -> Result<Ex
 }
 
 pub(super) fn merge(inputs: &[PathBuf], output: &Path, common: &Common) -> Result<ExitCode> {
-    check_output(output)?;
+    check_output(output, "an index", &[])?;
     let MergeReport { n_shapes, repeated } = merge_indexes(inputs, output, &Bars::new(common.quiet))?;
     report(common, &object! { index: output, n_shapes, repeated }, |_| {
         let twice =

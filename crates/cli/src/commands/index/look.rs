@@ -78,19 +78,19 @@ pub(super) fn info(path: &Path, common: &Common) -> Result<ExitCode> {
 }
 
 pub(super) fn export(
-    index: &Path,
+    path: &Path,
     output: Option<&Path>,
     format: Option<&str>,
     common: &Common,
 ) -> Result<ExitCode> {
     let output = output.unwrap_or(Path::new("-"));
-    if base::files::is_same_file(index, output) {
+    if base::files::is_same_file(path, output) {
         bail!("{} is the index itself; choose another file with -o", output.display());
     }
     let formats = ExportFormat::ALL.map(ExportFormat::extension);
     let is_lines = format.is_none_or(|format| format == ExportFormat::JsonLines.extension());
-    let index = Index::open(index)?;
-    if is_stream(output) && is_lines {
+    let index = Index::open(path)?;
+    if is_stream(output) && is_lines && !common.json {
         let mut out = BufWriter::with_capacity(1 << 16, std::io::stdout().lock());
         index.export(&mut out)?;
         out.flush()?;
@@ -99,6 +99,9 @@ pub(super) fn export(
     let output = Output::new(output, "an index", &formats, format, common)?;
     let format = ExportFormat::named(&output.format).unwrap_or(ExportFormat::JsonLines);
     export_index(&index, format, &output.path)?;
+    if common.json {
+        print_json(&object! { index: path, output: &output.name, n_shapes: index.len() })?;
+    }
     output.copy_to_stdout()?;
     Ok(ExitCode::SUCCESS)
 }

@@ -1,6 +1,6 @@
 //! Files of maps.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use base::object;
@@ -8,6 +8,7 @@ use canonform::descriptors::Side;
 use canonform::linalg::Matrix;
 use canonform::maps::{MappedSurface, Mapping, PointMap, SurfaceMap};
 use canonform::mesh::TriMesh;
+use canonform::mesh::io::without_extension;
 use canonform::surface::VertexId;
 use report::color::{Rgb, mix, perceptual, place_colors};
 use report::render::{Coloring, RenderOptions, render};
@@ -95,6 +96,13 @@ fn carried(places: &PointMap, colors: &[Rgb]) -> (Vec<Rgb>, Vec<f64>) {
     let nearest = places.points.iter();
     let nearest = nearest.map(|point| point.map_or(-1.0, |point| f64::from(point.nearest_corner().0)));
     ((0..places.points.len()).map(color).collect(), nearest.collect())
+}
+
+/// The picture beside a mesh in colors.
+pub(super) fn beside_mesh(path: &Path) -> PathBuf {
+    let mut name = without_extension(path).into_os_string();
+    name.push(".png");
+    name.into()
 }
 
 /// Writes a picture of two meshes in colors.

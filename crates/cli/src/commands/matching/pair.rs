@@ -14,12 +14,14 @@ use canonform::mesh::io::{VertexField, write_scalar_field};
 use canonform::settings::MethodSettings;
 use serde::Serialize;
 
-use super::files::{DOUBTFUL, MappedFile, corresponding, picture, write_functional, write_table};
+use super::files::{
+    DOUBTFUL, MappedFile, beside_mesh, corresponding, picture, write_functional, write_table,
+};
 use super::known;
 use super::transfer::read_transfer;
 use crate::args::{Common, MAP_FORMATS, MatchArgs, VALUE_FORMATS};
 use crate::input::{named, read_pair};
-use crate::output::{Fact, beside, check_format, check_output, facts, report};
+use crate::output::{Fact, beside, check_output, facts, report};
 
 #[derive(Serialize)]
 struct MapJson {
@@ -43,17 +45,16 @@ struct MapJson {
 pub(crate) fn match_meshes(args: &MatchArgs, common: &Common) -> Result<ExitCode> {
     let mut options = args.maps.options(args.form.options(&MethodSettings::default(), common)?);
     let checked = |path: &PathBuf| {
-        let others = [beside(path, "source"), beside(path, "alternative"), path.with_extension("png")];
-        others.iter().chain([path]).try_for_each(|path| check_output(path))?;
+        let others = [beside(path, "source"), beside(path, "alternative"), beside_mesh(path)];
+        others.iter().try_for_each(|path| check_output(path, "a map", &[]).map(drop))?;
         match args.transfer {
-            Some(_) => check_format(path, "values", &VALUE_FORMATS),
-            None => check_format(path, "a map", &MAP_FORMATS),
+            Some(_) => check_output(path, "values", &VALUE_FORMATS),
+            None => check_output(path, "a map", &MAP_FORMATS),
         }
     };
     let format = args.output.as_ref().map(checked).transpose()?;
     if let Some(path) = &args.functional {
-        check_output(path)?;
-        check_format(path, "a functional map", &["npy"])?;
+        check_output(path, "a functional map", &["npy"])?;
     }
     let prepared = &options;
     let [a, b] = read_pair(&args.pair, &args.form.repair, &args.limits, common, |_, mesh, surface, bars| {
@@ -168,7 +169,7 @@ fn write(
     }
     let field = VertexField { name: "match", values: &origins, colors: &colors[1] };
     write_scalar_field(path, meshes[1], &field)?;
-    let drawn = path.with_extension("png");
+    let drawn = beside_mesh(path);
     picture(&drawn, meshes, colors)?;
     Ok(Some(drawn))
 }
