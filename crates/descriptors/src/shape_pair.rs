@@ -47,6 +47,14 @@ impl PreparedShape {
         Ok(Self { fused, rigid, unit: unit.prepared()?, form, area })
     }
 
+    /// The shape with another form.
+    ///
+    /// # Errors
+    /// [`DescriptorError::NoExtent`].
+    pub fn with_form(&self, form: &CanonicalForm) -> Result<Self, DescriptorError> {
+        Self::new(self.fused.clone(), self.rigid.clone(), form, self.area)
+    }
+
     /// The robust distance, with the [rigid part](ShapeMetric::rigid). [`ShapeMetric::robust`] of the fused vectors is a lower
     /// bound.
     pub fn robust(&self, other: &Self) -> f64 {

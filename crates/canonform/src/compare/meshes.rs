@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use super::comparison::{Comparison, FaceAgreement, Overlay, Residual};
 use crate::error::Error;
-use crate::form::{DescribeOptions, FormOptions, MeasuredSurface, describe};
+use crate::form::{DescribeOptions, FormOptions, MeasuredSurface};
 
 /// A mesh, ready to be compared with others.
 #[derive(Debug)]
@@ -48,14 +48,12 @@ impl<S: Borrow<Surface>> ComparedMesh<S> {
         let measured = MeasuredSurface::new(repaired, options, observer)?;
         let form = measured.form_of(repaired)?;
         if *measured.options() == reference.form {
-            let shape = reference.prepare(&measured.describe(&reference, observer)?)?;
+            let shape = measured.prepare(&reference, observer)?;
             return Ok(Self { surface, geometry, form, shape, reference: None });
         }
-        let description = describe(repaired, &reference, observer)?;
-        let described = reference.prepare(&description)?;
-        let (fused, area) = (description.fused, Some(description.entry.facts.area));
-        let form_of_shape = form.reduced(reference.points);
-        let shape = PreparedShape::new(fused, described.rigid.clone(), &form_of_shape, area)?;
+        let described =
+            MeasuredSurface::new(repaired, &reference.form, observer)?.prepare(&reference, observer)?;
+        let shape = described.with_form(&form.reduced(reference.points))?;
         Ok(Self { geometry, form, shape, reference: Some(described), surface })
     }
 
@@ -200,7 +198,7 @@ mod tests {
         let surface = Surface::new(mesh, &options.form.repair, &()).unwrap();
         let measured = MeasuredSurface::new(&surface, &options.form, &()).unwrap();
         let form = measured.form_of(&surface).unwrap();
-        let shape = options.prepare(&measured.describe(options, &()).unwrap()).unwrap();
+        let shape = measured.prepare(options, &()).unwrap();
         Described { surface, form, shape }
     }
 

@@ -119,6 +119,32 @@ impl MeasuredSurface {
     /// As [`describe`].
     pub fn describe(&self, options: &DescribeOptions, observer: &dyn Observer) -> Result<Shape, Error> {
         let Self { prepared, embedded, .. } = self;
+        let (mut shape, spectrum) = self.metric_part(options, observer)?;
+        let form = SampledForm::by_least_squares(&embedded.distances, &spectrum.masses, observer)?;
+        shape.signatures.extend([stored(form.spectrum(spectrum.area.sqrt())?)]);
+        shape.disc_areas = DiscAreas::new(&embedded.distances, &prepared.mesh().vertex_areas())?.to_numbers();
+        Ok(shape)
+    }
+
+    /// The shape, ready to be compared: as that of the [description](Self::describe), without what only searches ask for.
+    ///
+    /// # Errors
+    /// As [`describe`].
+    pub fn prepare(
+        &self,
+        options: &DescribeOptions,
+        observer: &dyn Observer,
+    ) -> Result<PreparedShape, Error> {
+        options.prepare(&self.metric_part(options, observer)?.0)
+    }
+
+    /// What the metric needs of a description, and the spectrum of the surface.
+    fn metric_part(
+        &self,
+        options: &DescribeOptions,
+        observer: &dyn Observer,
+    ) -> Result<(Shape, LaplaceSpectrum), Error> {
+        let Self { prepared, embedded, .. } = self;
         let options = DescribeOptions { form: embedded.options.clone(), ..*options };
         options.validate()?;
         if self.remap.all_to_new().count() < 4 {
@@ -127,8 +153,6 @@ impl MeasuredSurface {
         let spectrum = LaplaceSpectrum::describing(prepared.intrinsic(), observer)?;
         observer.budget().check()?;
         let mut signatures = vec![
-            SampledForm::by_least_squares(&embedded.distances, &spectrum.masses, observer)?
-                .spectrum(spectrum.area.sqrt())?,
             geodesic_spectrum(&embedded.distances, &spectrum.masses, spectrum.area)?,
             shape_dna(&spectrum),
             heat_kernel_signature(&spectrum),
@@ -157,19 +181,20 @@ impl MeasuredSurface {
         let form = embedded.form(prepared)?.reduced(options.points);
         let unit = options.form_unit(facts.area);
         let points = form.points().iter().map(|p| p / unit).zip(form.weights());
-        let rounded = |values: Vec<f64>| values.into_iter().map(|value| value as f32).collect();
-        Ok(Shape {
+        let shape = Shape {
             entry: Entry { facts, ..Entry::default() },
             fused,
-            signatures: signatures
-                .into_iter()
-                .map(|s| (s.kind.name().to_owned(), rounded(s.values)))
-                .collect(),
+            signatures: signatures.into_iter().map(stored).collect(),
             form: points.map(|(p, w)| [p.x, p.y, p.z, *w].map(|x| x as f32)).collect(),
-            disc_areas: DiscAreas::new(&embedded.distances, &prepared.mesh().vertex_areas())?.to_numbers(),
-            components: Vec::new(),
-        })
+            ..Shape::default()
+        };
+        Ok((shape, spectrum))
     }
+}
+
+/// A signature as an index stores it.
+fn stored(Signature { kind, values }: Signature) -> (String, Vec<f32>) {
+    (kind.name().to_owned(), values.into_iter().map(|value| value as f32).collect())
 }
 
 impl DescribeOptions {

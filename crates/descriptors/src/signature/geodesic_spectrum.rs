@@ -1,6 +1,6 @@
 //! The spectrum of square roots of surface distances.
 
-use linalg::{LandmarkDistances, Matrix, symmetric_eigen, symmetric_eigenvalues, thin_qr};
+use linalg::{LandmarkDistances, Matrix, symmetric_eigen, symmetric_eigenvalues, triangular_factor};
 
 use super::kind::{Signature, SignatureKind};
 use crate::error::DescriptorError;
@@ -61,10 +61,7 @@ pub fn geodesic_spectrum(
     for mut column in columns.column_iter_mut() {
         column.iter_mut().zip(masses).for_each(|(x, m)| *x *= (m / total).sqrt());
     }
-    let triangle = match columns.nrows() >= columns.ncols() {
-        true => thin_qr(&columns).1,
-        false => columns,
-    };
+    let triangle = triangular_factor(&columns);
     let inverse =
         Matrix::from_diagonal(&eigen.values.iter().map(|value| 1.0 / value).collect::<Vec<_>>().into());
     let middle = &triangle * inverse * triangle.transpose();
