@@ -56,7 +56,7 @@
 //!
 //! ```
 //! use canonform::geodesics::{FirstSample, Method, Sampling};
-//! use canonform::nmds::{NystromOptions, nystrom};
+//! use canonform::nmds::{Regularization, nystrom};
 //! use canonform::surface::VertexId;
 //! use canonform::{Surface, mesh::shapes};
 //!
@@ -71,7 +71,7 @@
 //! let mut sampler = Sampling::Farthest.start(solver.as_ref(), FirstSample::default(), 0)?;
 //! sampler.extend_to(20)?;
 //! let samples = sampler.distances(20)?;
-//! let embedding = nystrom(&samples, &NystromOptions::default())?;
+//! let embedding = nystrom(&samples, Regularization::default(), 3)?;
 //! assert_eq!((samples.n_landmarks(), embedding.dim()), (20, 3));
 //! # Ok::<(), canonform::Error>(())
 //! ```

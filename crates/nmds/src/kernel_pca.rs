@@ -3,7 +3,7 @@
 use linalg::{LandmarkDistances, Matrix, symmetric_eigen, thin_qr};
 
 use crate::squares::{center_columns, check_extent, n_significant};
-use crate::{Embedding, NmdsError, NystromOptions, Regularization};
+use crate::{Embedding, NmdsError, Regularization};
 
 /// The width `sigma` of the Gaussian kernel `exp(-d^2 / (2 sigma^2))`.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
@@ -51,23 +51,6 @@ impl Bandwidth {
     }
 }
 
-/// Options of [`kernel_pca`].
-#[derive(Debug, Clone, PartialEq)]
-pub struct KernelPcaOptions {
-    /// Width of the kernel. Default: [`Bandwidth::Mean`].
-    pub bandwidth: Bandwidth,
-    /// Number of eigenpairs of the sample kernel to keep. Default: half of n, at least `dim + 4`, as in NMDS.
-    pub rank: Option<usize>,
-    /// Dimension of the embedding. Default: 3.
-    pub dim: usize,
-}
-
-impl Default for KernelPcaOptions {
-    fn default() -> Self {
-        Self { bandwidth: Bandwidth::default(), rank: None, dim: 3 }
-    }
-}
-
 /// Kernel PCA of geodesic distances with a Gaussian kernel, extrapolated from n landmarks.
 ///
 /// | symbol | here | shape | meaning |
@@ -76,6 +59,7 @@ impl Default for KernelPcaOptions {
 /// | `U L U'` | `kept` | n x n1 | leading eigenpairs of its rows at the landmarks |
 /// | `Phi` | result | p x k | principal components of the centered kernel `K U L^-1 U' K'` |
 ///
+/// * `rank` eigenpairs of the sample kernel are kept, by default half of n, at least `dim + 4`, as in NMDS.
 /// * The kernel is centered over all p points, which removes the constant leading vector. Components are scaled by the
 ///   roots of their eigenvalues and have no unit.
 /// * Cost: `O(p n n1)` time, `O(p n)` memory.
@@ -85,13 +69,16 @@ impl Default for KernelPcaOptions {
 /// # Errors
 /// [`NmdsError::BadBandwidth`], [`NmdsError::BadRank`], [`NmdsError::BadDimension`],
 /// [`NmdsError::NoExtent`], [`NmdsError::Linalg`].
-pub fn kernel_pca(distances: &LandmarkDistances, options: &KernelPcaOptions) -> Result<Embedding, NmdsError> {
-    let regularization = Regularization::LowRank { rank: options.rank };
-    let shape = NystromOptions { regularization, dim: options.dim };
-    let rank = shape.validate(distances.n_landmarks())?;
+pub fn kernel_pca(
+    distances: &LandmarkDistances,
+    bandwidth: Bandwidth,
+    rank: Option<usize>,
+    dim: usize,
+) -> Result<Embedding, NmdsError> {
+    let rank = Regularization::LowRank { rank }.rank_in(distances.n_landmarks(), dim)?;
     check_extent(distances.max(), distances.n_points())?;
     let mut kernel = distances.to_matrix()?;
-    let sigma = options.bandwidth.sigma(&kernel)?;
+    let sigma = bandwidth.sigma(&kernel)?;
     let gauss = |sq: f64| (-0.5 * sq / (sigma * sigma)).exp();
     kernel.apply(|d| *d = gauss(*d * *d));
     let block = distances.sq_block().map(gauss);
@@ -111,5 +98,5 @@ pub fn kernel_pca(distances: &LandmarkDistances, options: &KernelPcaOptions) -> 
     let mut columns = columns.resize_horizontally(rank, 0.0);
     center_columns(&mut columns);
     let (q, w) = thin_qr(&columns);
-    Embedding::from_factors(q, &(&w * w.transpose()), options.dim, 1.0, rank)
+    Embedding::from_factors(q, &(&w * w.transpose()), dim, 1.0, rank)
 }

@@ -4,46 +4,8 @@ use linalg::{LandmarkDistances, Matrix, SymmetricEigen, symmetric_eigen};
 
 use crate::out_of_sample::OutOfSample;
 use crate::passes::{product, sq_means, triangle};
-use crate::squares::{check_dim, check_extent, rounding, symmetrized};
-use crate::{Embedding, NmdsError, Regularization, SampleSearch};
-
-/// Options of [`nystrom`].
-#[derive(Debug, Clone, PartialEq)]
-pub struct NystromOptions {
-    /// The approximate inverse of the sample matrix. Default: [`Regularization::LowRank`] with half of the eigenpairs.
-    pub regularization: Regularization,
-    /// Dimension of the embedding (`k`). Default: 3.
-    pub dim: usize,
-}
-
-impl Default for NystromOptions {
-    fn default() -> Self {
-        Self { regularization: Regularization::default(), dim: 3 }
-    }
-}
-
-impl NystromOptions {
-    /// The rank that is used with `n_landmarks` samples.
-    ///
-    /// # Errors
-    /// [`NmdsError::BadRank`], [`NmdsError::BadAlpha`] and [`NmdsError::BadDimension`].
-    pub fn validate(&self, n_landmarks: usize) -> Result<usize, NmdsError> {
-        let rank = self.regularization.rank(n_landmarks, self.dim)?;
-        check_dim(self.dim, rank)?;
-        Ok(rank)
-    }
-
-    /// The number of samples that a [search](crate::SampleSearch) begins with: at least the rank, if one is given.
-    pub fn first_samples(&self) -> usize {
-        let first = SampleSearch::first(self.dim);
-        match self.regularization {
-            Regularization::LowRank { rank: Some(rank) } | Regularization::Cur { rank: Some(rank) } => {
-                first.max(rank)
-            }
-            _ => first,
-        }
-    }
-}
+use crate::squares::{check_extent, rounding, symmetrized};
+use crate::{Embedding, NmdsError, Regularization};
 
 /// Nystrom multidimensional scaling (NMDS): embeds `p` points from `n << p` columns of distances.
 ///
@@ -78,7 +40,7 @@ impl NystromOptions {
 /// ```
 /// # extern crate linalg as canonform_linalg;
 /// use canonform_linalg::{LandmarkDistances, Matrix};
-/// use canonform_nmds::{NystromOptions, nystrom};
+/// use canonform_nmds::{Regularization, nystrom};
 ///
 /// // 100 points on a quarter circle of radius 1, and their distances along the arc from 10 of them.
 /// let angle = |i: usize| i as f64 / 99.0 * std::f64::consts::FRAC_PI_2;
@@ -87,13 +49,17 @@ impl NystromOptions {
 /// let distances = LandmarkDistances::new(landmarks, columns)?;
 ///
 /// // Along the arc the points are on a line.
-/// let embedding = nystrom(&distances, &NystromOptions { dim: 1, ..NystromOptions::default() })?;
+/// let embedding = nystrom(&distances, Regularization::default(), 1)?;
 /// let length = embedding.coords[(0, 0)] - embedding.coords[(99, 0)];
 /// assert!((length.abs() - std::f64::consts::FRAC_PI_2).abs() < 1e-9);
 /// # Ok::<(), canonform_nmds::NmdsError>(())
 /// ```
-pub fn nystrom(distances: &LandmarkDistances, options: &NystromOptions) -> Result<Embedding, NmdsError> {
-    Ok(nystrom_extended(distances, options)?.0)
+pub fn nystrom(
+    distances: &LandmarkDistances,
+    regularization: Regularization,
+    dim: usize,
+) -> Result<Embedding, NmdsError> {
+    Ok(nystrom_extended(distances, regularization, dim)?.0)
 }
 
 /// As [`nystrom`], with the map that places further points.
@@ -102,19 +68,20 @@ pub fn nystrom(distances: &LandmarkDistances, options: &NystromOptions) -> Resul
 /// As [`nystrom`].
 pub fn nystrom_extended(
     distances: &LandmarkDistances,
-    options: &NystromOptions,
+    regularization: Regularization,
+    dim: usize,
 ) -> Result<(Embedding, OutOfSample), NmdsError> {
     let unit = check_extent(distances.max(), distances.n_points())?;
-    let rank = options.validate(distances.n_landmarks())?;
+    let rank = regularization.rank_in(distances.n_landmarks(), dim)?;
     let block = distances.sq_block() / (unit * unit);
-    let inverse = options.regularization.pseudo_inverse(&block, unit, rank)?;
+    let inverse = regularization.pseudo_inverse(&block, unit, rank)?;
 
     let means = sq_means(distances, unit)?;
     let w = triangle(distances, unit, &means, Some(&inverse.basis))?;
     let inverse = inverse.without_rounding(&w, distances);
     let core = symmetrized(inverse.core()) * -0.5;
     let inner = symmetrized(&w * &core * w.transpose());
-    let (axes, values) = principal_axes(&(core * w.transpose()), &inner, options.dim)?;
+    let (axes, values) = principal_axes(&(core * w.transpose()), &inner, dim)?;
     let mut axes = &inverse.basis * axes;
     let columns = product(distances, unit, &means, &axes)?;
     let (embedding, factors) =

@@ -14,13 +14,12 @@ use crate::NmdsError;
 /// ```
 /// # extern crate linalg as canonform_linalg;
 /// use canonform_linalg::{LandmarkDistances, Matrix};
-/// use canonform_nmds::{NystromOptions, nystrom_extended};
+/// use canonform_nmds::{Regularization, nystrom_extended};
 ///
 /// // The points 0, 1, ..., 9 on a line, and the distances from three of them.
 /// let landmarks = vec![0, 4, 9];
 /// let columns = Matrix::from_fn(10, 3, |i, j| (i as f64 - landmarks[j] as f64).abs());
-/// let options = NystromOptions { dim: 1, ..NystromOptions::default() };
-/// let (embedding, extension) = nystrom_extended(&LandmarkDistances::new(landmarks, columns)?, &options)?;
+/// let (embedding, extension) = nystrom_extended(&LandmarkDistances::new(landmarks, columns)?, Regularization::default(), 1)?;
 ///
 /// // A point between the second and the third.
 /// let placed = extension.place(&Matrix::from_row_slice(1, 3, &[1.5, 2.5, 7.5]))?;

@@ -2,8 +2,8 @@
 
 use linalg::{LandmarkDistances, Matrix, SymmetricEigen, symmetric_eigen, thin_svd};
 
-use crate::NmdsError;
-use crate::squares::n_significant;
+use crate::squares::{check_dim, n_significant};
+use crate::{NmdsError, SampleSearch};
 
 /// How the pseudo-inverse `S⁺` in the Nystrom approximation `Ê = R S⁺ R'` is regularized: small eigenvalues of `S` are
 /// mostly noise, and their reciprocals are large.
@@ -121,6 +121,25 @@ impl Regularization {
             return Err(NmdsError::BadRank { rank, n_landmarks });
         }
         Ok(rank)
+    }
+
+    /// The same, if it allows as many dimensions.
+    ///
+    /// # Errors
+    /// [`NmdsError::BadRank`], [`NmdsError::BadAlpha`] and [`NmdsError::BadDimension`].
+    pub fn rank_in(self, n_landmarks: usize, dim: usize) -> Result<usize, NmdsError> {
+        let rank = self.rank(n_landmarks, dim)?;
+        check_dim(dim, rank)?;
+        Ok(rank)
+    }
+
+    /// The number of samples that a [search](SampleSearch) in `dim` dimensions begins with: at least the rank, if one is given.
+    pub fn first_samples(self, dim: usize) -> usize {
+        let first = SampleSearch::first(dim);
+        match self {
+            Self::LowRank { rank: Some(rank) } | Self::Cur { rank: Some(rank) } => first.max(rank),
+            _ => first,
+        }
     }
 
     /// The pseudo-inverse of `sq_block`, the squared distances between samples in units of `unit²`, with the `rank` from

@@ -69,7 +69,7 @@ pub type EmbedSamples<'a> = dyn Fn(&LandmarkDistances) -> Result<Embedding, Nmds
 /// ```
 /// # extern crate linalg as canonform_linalg;
 /// use canonform_linalg::{LandmarkDistances, Matrix};
-/// use canonform_nmds::{NmdsError, NystromOptions, SampleSearch, nystrom};
+/// use canonform_nmds::{NmdsError, Regularization, SampleSearch, nystrom};
 ///
 /// // Points on a circle, with distances along the arc, embedded in the plane.
 /// let p = 200;
@@ -80,12 +80,12 @@ pub type EmbedSamples<'a> = dyn Fn(&LandmarkDistances) -> Result<Embedding, Nmds
 ///     Ok::<_, NmdsError>(LandmarkDistances::new(landmarks.clone(), columns(&landmarks))?)
 /// };
 ///
-/// let options = NystromOptions { dim: 2, ..NystromOptions::default() };
+/// let regularization = Regularization::default();
 /// let search = SampleSearch {
-///     first: options.first_samples(),
+///     first: regularization.first_samples(2),
 ///     limit: 100,
 ///     seed: 0,
-///     embed: &|distances| nystrom(distances, &options),
+///     embed: &|distances| nystrom(distances, regularization, 2),
 /// };
 /// let (embedding, distances, report) = search.run(landmarks, |rows| Ok(columns(rows)))?;
 /// println!("{:?} with {} samples and rank {}", report.stop, distances.n_landmarks(), embedding.rank);

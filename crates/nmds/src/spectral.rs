@@ -16,24 +16,11 @@ pub struct SpectralBasis<'a> {
     pub masses: &'a [f64],
 }
 
-/// Options of [`spectral`].
-#[derive(Debug, Clone, PartialEq)]
-pub struct SpectralOptions {
-    /// Weight of the known distances against smoothness for a surface of unit area; positive. If infinite, the distances
-    /// are fitted first (exactly if there are at least as many eigenvectors as samples), and smoothness decides the rest.
-    ///
-    /// Default: 1000. With 10 to 200 samples and 300 eigenvectors, the stress is within 0.2 % of that of the best weight,
-    /// which is infinite. With nearly as many samples as eigenvectors an infinite weight fits noise, while this one stays
+impl SpectralBasis<'_> {
+    /// The default weight of distances. With 10 to 200 samples and 300 eigenvectors, the stress is within 0.2 % of that of the best
+    /// weight, which is infinite. With nearly as many samples as eigenvectors an infinite weight fits noise, while this one stays
     /// within 3 % of the optimum.
-    pub mu: f64,
-    /// Dimension of the embedding. Default: 3.
-    pub dim: usize,
-}
-
-impl Default for SpectralOptions {
-    fn default() -> Self {
-        Self { mu: 1e3, dim: 3 }
-    }
+    pub const MU: f64 = 1e3;
 }
 
 /// Eigenvalues up to this are zero up to rounding, for a surface of unit area.
@@ -54,6 +41,8 @@ const KERNEL: f64 = 1e-10;
 /// scaling of `P S P' = Φ α Φ'` (Aflalo and Kimmel 2013, [`aflalo2013`] in `REFERENCES.bib`; the separable
 /// solution of their published code).
 ///
+/// * `mu` weighs the known distances against smoothness on a surface of unit area. If it is infinite, the distances are fitted first
+///   (exactly if there are at least as many eigenvectors as samples), and smoothness decides the rest.
 /// * Uses the distances between samples only.
 /// * Independent of the unit of length.
 /// * `M` is computed from an n x n system that is well conditioned for any `mu`, even infinite: off the kernel
@@ -71,23 +60,24 @@ const KERNEL: f64 = 1e-10;
 pub fn spectral(
     distances: &LandmarkDistances,
     basis: &SpectralBasis<'_>,
-    options: &SpectralOptions,
+    mu: f64,
+    dim: usize,
 ) -> Result<Embedding, NmdsError> {
     let (p, m) = basis.vectors.shape();
     assert_eq!(basis.values.len(), m, "one eigenvalue per eigenvector");
     check_points(p, distances.n_points())?;
     check_points(basis.masses.len(), distances.n_points())?;
     // The constant function spans no dimension.
-    check_dim(options.dim, distances.n_landmarks().min(m.saturating_sub(1)))?;
-    if options.mu.is_nan() || options.mu <= 0.0 {
-        return Err(NmdsError::BadSmoothness(options.mu));
+    check_dim(dim, distances.n_landmarks().min(m.saturating_sub(1)))?;
+    if mu.is_nan() || mu <= 0.0 {
+        return Err(NmdsError::BadSmoothness(mu));
     }
     let unit = check_extent(distances.max(), distances.n_points())?;
-    let mut interpolant = interpolant(distances.landmarks(), basis, options.mu)?;
+    let mut interpolant = interpolant(distances.landmarks(), basis, mu)?;
     center_columns(&mut interpolant);
     let (q, w) = thin_qr(&interpolant);
     let inner = symmetrized(&w * (distances.sq_block() / (-2.0 * unit * unit)) * w.transpose());
-    Embedding::from_factors(q, &inner, options.dim, unit, distances.n_landmarks())
+    Embedding::from_factors(q, &inner, dim, unit, distances.n_landmarks())
 }
 
 /// `P = Φ M`: column j is the smoothest function that is one at sample j and zero at the others, as closely as `mu`

@@ -53,10 +53,11 @@ pub(crate) fn nystrom<'py>(
     landmarks: Vec<usize>,
     settings: Settings,
 ) -> PyResult<Embedded<'py>> {
-    let options = settings.nystrom()?;
+    let (regularization, dim) = settings.nystrom()?;
     let columns = matrix_of(&columns);
-    let (embedding, extension) =
-        run(py, |_| Ok(nystrom_extended(&LandmarkDistances::new(landmarks, columns)?, &options)?))?;
+    let (embedding, extension) = run(py, |_| {
+        Ok(nystrom_extended(&LandmarkDistances::new(landmarks, columns)?, regularization, dim)?)
+    })?;
     let Embedding { coords, eigenvalues, negative_mass, rank } = embedding;
     let points = arrays::of_matrix(py, &coords)?;
     Ok((points, arrays::vector(py, eigenvalues), negative_mass, rank, Extension(extension)))

@@ -11,7 +11,7 @@ use canonform::geodesics::Method;
 use canonform::library::{Measure, ShapeLimits};
 use canonform::maps::CorrespondOptions;
 use canonform::mesh::RepairOptions;
-use canonform::nmds::NystromOptions;
+use canonform::nmds::Regularization;
 use canonform::settings::{
     DescriptionSettings, EmbeddingName, FormSettings, Geodesic, MapSettings, MarchingSettings,
     MethodSettings, NoEffect, RepairSettings, StressSettings,
@@ -145,10 +145,10 @@ impl Settings {
         Ok(FormOptions { repair, seed: self.seed.unwrap_or_default(), ..options })
     }
 
-    /// How NMDS inverts the matrix of the samples.
-    pub(crate) fn nystrom(&self) -> PyResult<NystromOptions> {
+    /// How NMDS inverts the matrix of the samples, and in how many dimensions it embeds.
+    pub(crate) fn nystrom(&self) -> PyResult<(Regularization, usize)> {
         let FormOptions { method, dim, .. } = self.form(RepairOptions::default())?;
-        Ok(NystromOptions { regularization: method.regularization().unwrap_or_default(), dim })
+        Ok((method.regularization().unwrap_or_default(), dim))
     }
 
     /// How shapes are described.

@@ -12,10 +12,7 @@ use anyhow::Result;
 use descriptors::CanonicalForm;
 use geodesics::{FastMarchingOptions, Method, ObtuseTreatment, Sampling, Update};
 use linalg::LandmarkDistances;
-use nmds::{
-    Embedding, NystromOptions, Regularization, SpectralBasis, SpectralOptions, nystrom, paper_stress,
-    spectral,
-};
+use nmds::{Embedding, Regularization, SpectralBasis, nystrom, paper_stress, spectral};
 use report::numbers::significant;
 use report::record::{
     Axis, AxisScale, Figure, FigurePanels, Mark, Plot, PlotPoint, Series, SeriesKind, TileRow, Tiles,
@@ -113,9 +110,7 @@ fn embeddings(context: &Context<'_>, specimen: &Specimen<'_>, distances: Method)
         Ok::<_, linalg::LinalgError>((embedding, stress))
     };
     let low_rank = Regularization::LowRank { rank: Some(options.rank) };
-    let nmds = |samples: &LandmarkDistances| {
-        nystrom(samples, &NystromOptions { regularization: low_rank, dim: DIM })
-    };
+    let nmds = |samples: &LandmarkDistances| nystrom(samples, low_rank, DIM);
     let optimum = specimen.optimum(distances)?;
     let mut methods: Vec<Runs> = vec![vec![(optimum.embedding.clone(), optimum.stress)]];
     methods.resize_with(METHODS.len(), Runs::new);
@@ -128,7 +123,7 @@ fn embeddings(context: &Context<'_>, specimen: &Specimen<'_>, distances: Method)
         };
         let farthest = sampled(distances, Sampling::Farthest, first)?;
         methods[1].push(judged(nmds(&farthest)?)?);
-        methods[2].push(judged(spectral(&farthest, &basis, &SpectralOptions::default())?)?);
+        methods[2].push(judged(spectral(&farthest, &basis, SpectralBasis::MU, DIM)?)?);
         let least = sampled(distances, Sampling::MinVariance, first)?;
         methods[3].push(judged(nmds(&least)?)?);
         let hops = sampled(Method::BreadthFirst, Sampling::Farthest, first)?;

@@ -10,8 +10,7 @@ use anyhow::Result;
 use geodesics::Method;
 use linalg::LandmarkDistances;
 use nmds::{
-    Embedding, NmdsError, NystromOptions, Regularization, SpectralBasis, SpectralOptions, landmark_mds,
-    nystrom, paper_stress, spectral,
+    Embedding, NmdsError, Regularization, SpectralBasis, landmark_mds, nystrom, paper_stress, spectral,
 };
 use report::Record;
 use report::record::{Axis, Series};
@@ -52,16 +51,14 @@ fn excesses(context: &Context<'_>, specimen: &Specimen<'_>) -> Result<Vec<Series
     let excess = |embedding: Result<Embedding, NmdsError>| -> Result<f64> {
         Ok(paper_stress(&embedding?.coords, all.as_ref())? - optimum)
     };
-    let nmds = |samples: &LandmarkDistances, regularization| {
-        excess(nystrom(samples, &NystromOptions { regularization, dim: DIM }))
-    };
+    let nmds = |samples: &LandmarkDistances, regularization| excess(nystrom(samples, regularization, DIM));
     let low_rank = |samples: &LandmarkDistances| nmds(samples, half(samples.n_landmarks()));
     let farthest = |samples: &LandmarkDistances| {
         Ok(vec![
             low_rank(samples)?,
             nmds(samples, Regularization::None)?,
             excess(landmark_mds(samples, DIM))?,
-            excess(spectral(samples, &basis, &SpectralOptions::default()))?,
+            excess(spectral(samples, &basis, SpectralBasis::MU, DIM))?,
         ])
     };
     context.sweep(specimen, &METHODS, farthest, low_rank)

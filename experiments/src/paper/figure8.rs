@@ -7,7 +7,7 @@ use anyhow::{Context as _, Result};
 use descriptors::LaplaceSpectrum;
 use geodesics::{Method, Sampling};
 use linalg::LandmarkDistances;
-use nmds::{NystromOptions, Regularization, RpiAlpha, SpectralBasis, SpectralOptions, nystrom, spectral};
+use nmds::{Regularization, RpiAlpha, SpectralBasis, nystrom, spectral};
 use report::Record;
 use report::record::Axis;
 
@@ -37,7 +37,7 @@ pub(crate) fn figure8(context: &Context<'_>) -> Result<Record> {
         of_basis = of_basis.min(seconds);
     }
     let nmds = |samples: &LandmarkDistances, regularization| -> Result<f64> {
-        Ok(timed(|| nystrom(samples, &NystromOptions { regularization, dim: DIM }))?.1)
+        Ok(timed(|| nystrom(samples, regularization, DIM))?.1)
     };
     let mut runs = Vec::new();
     for _ in 0..options.runs {
@@ -46,7 +46,7 @@ pub(crate) fn figure8(context: &Context<'_>) -> Result<Record> {
             let low_rank = nmds(samples, half(samples.n_landmarks()))?;
             let none = nmds(samples, Regularization::None)?;
             let rpi = nmds(samples, Regularization::Rpi { alpha: RpiAlpha::default() })?;
-            let (_, smds) = timed(|| spectral(samples, &basis, &SpectralOptions::default()))?;
+            let (_, smds) = timed(|| spectral(samples, &basis, SpectralBasis::MU, DIM))?;
             run.push(vec![low_rank, none, rpi, of_basis + smds, smds]);
         }
         runs.push(run);

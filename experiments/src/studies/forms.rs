@@ -10,8 +10,8 @@ use descriptors::{CanonicalForm, LaplaceSpectrum, Normalization, SampledForm, Si
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
 use mesh::TriMesh;
 use nmds::{
-    Bandwidth, Embedding, KernelPcaOptions, LandmarkPairs, NystromOptions, SmacofOptions, classical_full,
-    kernel_pca, landmark_mds, nystrom, smacof,
+    Bandwidth, Embedding, LandmarkPairs, Regularization, SmacofOptions, classical_full, kernel_pca,
+    landmark_mds, nystrom, smacof,
 };
 use rayon::prelude::*;
 use report::record::{Axis, AxisScale, Mark, PlotPoint, SeriesKind};
@@ -215,7 +215,7 @@ impl FormMethod {
 
     fn embedding(self, distances: &LandmarkDistances, masses: &[f64]) -> Result<Embedding> {
         let dim = self.dim;
-        let usual = || nystrom(distances, &NystromOptions { dim, ..NystromOptions::default() });
+        let usual = || nystrom(distances, Regularization::default(), dim);
         Ok(match self.fit {
             Fit::Nystrom => usual()?,
             Fit::Landmark => landmark_mds(distances, dim)?,
@@ -227,7 +227,7 @@ impl FormMethod {
             }
             Fit::KernelPca => {
                 let rank = Some(distances.n_landmarks().div_ceil(2));
-                kernel_pca(distances, &KernelPcaOptions { bandwidth: Bandwidth::Mean, rank, dim })?
+                kernel_pca(distances, Bandwidth::Mean, rank, dim)?
             }
         })
     }

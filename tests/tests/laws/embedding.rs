@@ -6,7 +6,7 @@ use canonform::Surface;
 use canonform::embed::{EmbedMethod, FormOptions, Samples, StressChoice, StressKind, embed};
 use datasets::{CreatureOptions, Family};
 use linalg::DistanceMatrix;
-use nmds::{Reconstruction, Regularization, SmacofOptions, SpectralOptions, paper_stress, stress};
+use nmds::{Reconstruction, Regularization, SmacofOptions, SpectralBasis, paper_stress, stress};
 
 use crate::support::{SHAPES, all_pairs, body, measured, surface};
 
@@ -61,7 +61,7 @@ fn methods() -> Vec<EmbedMethod> {
     let nystrom = Regularization::all().map(|regularization| EmbedMethod::Nystrom { regularization });
     let descent = SmacofOptions { max_iterations: 10, ..SmacofOptions::default() };
     let smacof = EmbedMethod::Smacof { regularization: Regularization::default(), descent };
-    let spectral = EmbedMethod::Spectral { eigenvectors: 60, mu: SpectralOptions::default().mu };
+    let spectral = EmbedMethod::Spectral { eigenvectors: 60, mu: SpectralBasis::MU };
     nystrom.into_iter().chain([EmbedMethod::Classical, EmbedMethod::Landmark, spectral, smacof]).collect()
 }
 

@@ -3,7 +3,7 @@
 use geodesics::SurfacePoint;
 use linalg::{LandmarkDistances, Matrix};
 use mesh::{InputPoint, Surface};
-use nmds::{Embedding, NystromOptions, OutOfSample, Regularization, nystrom_extended};
+use nmds::{Embedding, OutOfSample, Regularization, nystrom_extended};
 use surface::VertexId;
 
 use super::distances::Measurement;
@@ -36,8 +36,7 @@ impl Embedded {
         if let Regularization::LowRank { rank } = &mut regularization {
             *rank = Some(self.embedding.rank);
         }
-        let options = NystromOptions { regularization, dim: self.embedding.dim() };
-        Ok(nystrom_extended(&self.distances, &options)?.1)
+        Ok(nystrom_extended(&self.distances, regularization, self.embedding.dim())?.1)
     }
 
     /// Places points of the surface in the embedding: coordinates, one row for each point, in mesh units. `surface` is the one that

@@ -2,9 +2,8 @@
 
 use descriptors::LaplaceSpectrum;
 use nmds::{
-    Bandwidth, EmbedSamples, Embedding, KernelPcaOptions, LandmarkPairs, NystromOptions, Regularization,
-    SampleSearch, SmacofOptions, SpectralBasis, SpectralOptions, classical, kernel_pca, landmark_mds,
-    nystrom, smacof, spectral,
+    Bandwidth, EmbedSamples, Embedding, LandmarkPairs, Regularization, SampleSearch, SmacofOptions,
+    SpectralBasis, classical, kernel_pca, landmark_mds, nystrom, smacof, spectral,
 };
 use serde::{Deserialize, Serialize};
 use surface::IntrinsicMesh;
@@ -94,7 +93,7 @@ impl EmbedMethod {
 
     /// Spectral scaling in 300 eigenfunctions, as in the paper, with the default weight of the distances.
     pub fn spectral() -> Self {
-        Self::Spectral { eigenvectors: EIGENVECTORS, mu: SpectralOptions::default().mu }
+        Self::Spectral { eigenvectors: EIGENVECTORS, mu: SpectralBasis::MU }
     }
 
     /// The regularization of the sample matrix, for methods that have one.
@@ -138,8 +137,8 @@ impl EmbedMethod {
     ) -> Result<Outcome, Error> {
         let budget = measurement.observer.budget();
         let by_nystrom = |regularization| {
-            let options = NystromOptions { regularization, dim };
-            measurement.sampled(options.first_samples(), &|distances| nystrom(distances, &options))
+            let first = Regularization::first_samples(regularization, dim);
+            measurement.sampled(first, &|distances| nystrom(distances, regularization, dim))
         };
         let sampled = |embed: &EmbedSamples<'_>| measurement.sampled(SampleSearch::first(dim), embed);
         let surface = || surface.unwrap_or_else(|| unreachable!("{} needs the surface", self.name()));
@@ -153,10 +152,10 @@ impl EmbedMethod {
                 let LaplaceSpectrum { values, vectors, masses, .. } =
                     LaplaceSpectrum::new(surface, eigenvectors, &budget)?;
                 let basis = SpectralBasis { values: &values, vectors: &vectors, masses: &masses };
-                sampled(&|distances| spectral(distances, &basis, &SpectralOptions { mu, dim }))
+                sampled(&|distances| spectral(distances, &basis, mu, dim))
             }
             Self::KernelPca { rank, bandwidth } => {
-                sampled(&|distances| kernel_pca(distances, &KernelPcaOptions { bandwidth, rank, dim }))
+                sampled(&|distances| kernel_pca(distances, bandwidth, rank, dim))
             }
             Self::Classical => {
                 let all = measurement.all_pairs()?;

@@ -6,7 +6,7 @@
 use descriptors::Normalization;
 use geodesics::{FastMarchingOptions, FirstSample, Method, ObtuseTreatment, Sampling, Update};
 use mesh::{ComponentPolicy, Orient, RepairOptions, Weld};
-use nmds::{Bandwidth, Regularization, RpiAlpha, SmacofOptions, SpectralOptions};
+use nmds::{Bandwidth, Regularization, RpiAlpha, SmacofOptions, SpectralBasis};
 use serde::Deserialize;
 use strum::{EnumMessage, IntoStaticStr, VariantArray};
 use surface::VertexId;
@@ -282,7 +282,7 @@ impl MethodSettings {
             EmbeddingName::Landmark => EmbedMethod::Landmark,
             EmbeddingName::Spectral => EmbedMethod::Spectral {
                 eigenvectors: self.n_eigenfunctions.unwrap_or(EIGENVECTORS),
-                mu: self.mu.unwrap_or(SpectralOptions::default().mu),
+                mu: self.mu.unwrap_or(SpectralBasis::MU),
             },
             EmbeddingName::Kpca => EmbedMethod::KernelPca { rank, bandwidth: self.sigma.unwrap_or_default() },
             EmbeddingName::Mds => EmbedMethod::Classical,

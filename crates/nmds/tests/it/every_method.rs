@@ -35,17 +35,13 @@ const METHODS: [Method; 14] = [
     ("NMDS, CUR", |p, k| nmds(p, k, Regularization::Cur { rank: None }), &[Exact, Length]),
     ("NMDS, full CUR", full_cur, &[Exact, Classical, Length, Unordered]),
     ("landmark", |p, k| landmark_mds(&p.samples, k), &[Exact, Classical, Length, Unordered, Stable]),
-    (
-        "kernel PCA",
-        |p, dim| kernel_pca(&p.samples, &KernelPcaOptions { dim, ..Default::default() }),
-        &[Unordered, Stable],
-    ),
+    ("kernel PCA", |p, dim| kernel_pca(&p.samples, Bandwidth::default(), None, dim), &[Unordered, Stable]),
     ("spectral", |p, k| with_weight(p, k, f64::INFINITY), &[Classical, Length, Unordered, Stable]),
     ("spectral, mu 10", |p, k| with_weight(p, k, 10.0), &[Length, Unordered, Stable]),
 ];
 
 fn nmds(problem: &Problem, dim: usize, regularization: Regularization) -> Result<Embedding, NmdsError> {
-    nystrom(&problem.samples, &NystromOptions { regularization, dim })
+    nystrom(&problem.samples, regularization, dim)
 }
 
 fn rpi(c: f64) -> Regularization {
@@ -65,7 +61,7 @@ fn with_weight(problem: &Problem, dim: usize, mu: f64) -> Result<Embedding, Nmds
         &(),
     )?;
     let basis = SpectralBasis { values: &basis.values, vectors: &basis.vectors, masses: &problem.masses };
-    spectral(&problem.samples, &basis, &SpectralOptions { mu, dim })
+    spectral(&problem.samples, &basis, mu, dim)
 }
 
 fn smacof_from_classical(problem: &Problem, dim: usize) -> Result<Embedding, NmdsError> {

@@ -1,4 +1,4 @@
-use canonform_nmds::{Bandwidth, KernelPcaOptions, NmdsError, kernel_pca};
+use canonform_nmds::{Bandwidth, NmdsError, kernel_pca};
 use linalg::{Matrix, symmetric_eigen};
 
 use crate::support::{Cloud, landmark_distances};
@@ -8,8 +8,7 @@ fn with_all_samples_equals_the_principal_components_of_the_centered_kernel() {
     let p = 40;
     let cloud = Cloud::new(p, 3, 11);
     let distances = landmark_distances(&cloud, p);
-    let options = KernelPcaOptions { bandwidth: Bandwidth::Value(4.0), rank: Some(p), dim: 3 };
-    let embedding = kernel_pca(&distances, &options).unwrap();
+    let embedding = kernel_pca(&distances, Bandwidth::Value(4.0), Some(p), 3).unwrap();
     let kernel = Matrix::from_fn(p, p, |i, j| (-cloud.distance(i, j).powi(2) / 32.0).exp());
     let centering = Matrix::identity(p, p).add_scalar(-1.0 / p as f64);
     let kernel = &centering * kernel * &centering;
@@ -27,8 +26,7 @@ fn relative_widths_are_statistics_of_the_distances() {
     let mut sorted = distances.to_matrix().unwrap().as_slice().to_vec();
     sorted.sort_by(f64::total_cmp);
     let mean = sorted.iter().sum::<f64>() / sorted.len() as f64;
-    let embed =
-        |bandwidth| kernel_pca(&distances, &KernelPcaOptions { bandwidth, ..Default::default() }).unwrap();
+    let embed = |bandwidth| kernel_pca(&distances, bandwidth, None, 3).unwrap();
     let expected = [mean, sorted[sorted.len() / 2], sorted[sorted.len() - 1]];
     for (bandwidth, sigma) in [Bandwidth::Mean, Bandwidth::Median, Bandwidth::Max].into_iter().zip(expected) {
         let (by_name, by_value) = (embed(bandwidth), embed(Bandwidth::Value(sigma)));
@@ -40,7 +38,7 @@ fn relative_widths_are_statistics_of_the_distances() {
 fn the_width_must_be_positive() {
     let distances = landmark_distances(&Cloud::new(30, 3, 13), 6);
     for sigma in [0.0, -1.0, f64::INFINITY] {
-        let options = KernelPcaOptions { bandwidth: Bandwidth::Value(sigma), ..Default::default() };
-        assert_eq!(kernel_pca(&distances, &options), Err(NmdsError::BadBandwidth(sigma)));
+        let found = kernel_pca(&distances, Bandwidth::Value(sigma), None, 3);
+        assert_eq!(found, Err(NmdsError::BadBandwidth(sigma)));
     }
 }

@@ -11,12 +11,8 @@ const ALL: [Regularization; 5] = [
     Regularization::Cur { rank: None },
 ];
 
-fn options(regularization: Regularization) -> NystromOptions {
-    NystromOptions { regularization, ..Default::default() }
-}
-
-fn low_rank(rank: usize) -> NystromOptions {
-    options(Regularization::LowRank { rank: Some(rank) })
+fn low_rank(rank: usize) -> Regularization {
+    Regularization::LowRank { rank: Some(rank) }
 }
 
 #[test]
@@ -24,12 +20,12 @@ fn points_in_space_are_exact_at_rank_five() {
     // Several groups of blocks, and a last block with fewer rows than columns.
     let cloud = Cloud::new(9 * 1024 + 3, 3, 1);
     let distances = landmark_distances(&cloud, 10);
-    for rank in [Regularization::LowRank { rank: Some(5) }, Regularization::Cur { rank: Some(5) }] {
-        let embedding = nystrom(&distances, &options(rank)).unwrap();
+    for rank in [low_rank(5), Regularization::Cur { rank: Some(5) }] {
+        let embedding = nystrom(&distances, rank, 3).unwrap();
         assert!(procrustes_free_gap(&cloud, &embedding) < 1e-9, "{rank:?}");
         assert!(embedding.rank == 5 && embedding.negative_mass < 1e-12);
     }
-    let at_four = nystrom(&distances, &low_rank(4)).unwrap();
+    let at_four = nystrom(&distances, low_rank(4), 3).unwrap();
     assert!(procrustes_free_gap(&cloud, &at_four) > 1e-3, "rank 4 is too small for three dimensions");
 }
 
@@ -39,9 +35,9 @@ fn the_alpha_of_the_paper_depends_on_the_unit_of_length() {
     for scale in [1e-3, 1.0, 1e3] {
         let distances = scaled(&distances, scale);
         let sigma_1 = sample_eigenvalues(&distances).unwrap()[0];
-        let by_name = options(Regularization::Rpi { alpha: RpiAlpha::Paper });
-        let by_value = options(Regularization::Rpi { alpha: RpiAlpha::Relative(1.0 / sigma_1) });
-        let (a, b) = (nystrom(&distances, &by_name).unwrap(), nystrom(&distances, &by_value).unwrap());
+        let by_name = Regularization::Rpi { alpha: RpiAlpha::Paper };
+        let by_value = Regularization::Rpi { alpha: RpiAlpha::Relative(1.0 / sigma_1) };
+        let [a, b] = [by_name, by_value].map(|by| nystrom(&distances, by, 3).unwrap());
         assert!((&a.coords - &b.coords).amax() < 1e-12 * b.coords.amax());
     }
 }
@@ -49,7 +45,7 @@ fn the_alpha_of_the_paper_depends_on_the_unit_of_length() {
 #[test]
 fn impossible_options_are_rejected_with_the_limit() {
     let distances = landmark_distances(&Cloud::new(20, 3, 3), 6);
-    let embed = |regularization, dim| nystrom(&distances, &NystromOptions { regularization, dim });
+    let embed = |regularization, dim| nystrom(&distances, regularization, dim);
     let low_rank = |rank| Regularization::LowRank { rank };
     for rank in [0, 7] {
         assert_eq!(embed(low_rank(Some(rank)), 3), Err(NmdsError::BadRank { rank, n_landmarks: 6 }));
@@ -63,14 +59,14 @@ fn impossible_options_are_rejected_with_the_limit() {
 
 #[test]
 fn a_search_begins_with_the_rank_that_is_given() {
-    assert_eq!([NystromOptions::default(), low_rank(30)].map(|options| options.first_samples()), [8, 30]);
+    assert_eq!([Regularization::default(), low_rank(30)].map(|by| by.first_samples(3)), [8, 30]);
 }
 
 #[test]
 fn a_single_sample_gives_zero_coordinates() {
     let one = LandmarkDistances::new(vec![3], Matrix::from_fn(8, 1, |i, _| (i as f64 - 3.0).abs())).unwrap();
     for regularization in ALL {
-        let embedding = nystrom(&one, &NystromOptions { regularization, dim: 1 }).unwrap();
+        let embedding = nystrom(&one, regularization, 1).unwrap();
         assert_eq!(embedding.coords, Matrix::zeros(8, 1), "{regularization:?}");
     }
 }

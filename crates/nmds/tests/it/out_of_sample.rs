@@ -12,8 +12,7 @@ fn points_of_the_embedding_keep_their_places() {
         Regularization::None,
         Regularization::Cur { rank: None },
     ] {
-        let options = NystromOptions { regularization, dim: 3 };
-        let (embedding, extension) = nystrom_extended(&distances, &options).unwrap();
+        let (embedding, extension) = nystrom_extended(&distances, regularization, 3).unwrap();
         let placed = extension.place(&distances.to_matrix().unwrap()).unwrap();
         let gap = (placed - &embedding.coords).amax();
         assert!(gap < 1e-9 * embedding.coords.amax(), "{regularization:?}: {gap:e}");
@@ -29,7 +28,7 @@ fn other_points_in_space_are_placed_exactly() {
         Matrix::from_fn(rows.len(), 12, |i, j| cloud.distance(rows.start + i, landmarks[j]))
     };
     let known = LandmarkDistances::new(landmarks.clone(), columns(0..100)).unwrap();
-    let (embedding, extension) = nystrom_extended(&known, &NystromOptions::default()).unwrap();
+    let (embedding, extension) = nystrom_extended(&known, Regularization::default(), 3).unwrap();
     let placed = extension.place(&columns(100..200)).unwrap();
     for i in 0..100 {
         for j in 0..100 {
@@ -42,7 +41,7 @@ fn other_points_in_space_are_placed_exactly() {
 #[test]
 fn distances_that_do_not_fit_are_refused() {
     let distances = landmark_distances(&Cloud::new(50, 3, 1), 10);
-    let (_, extension) = nystrom_extended(&distances, &NystromOptions::default()).unwrap();
+    let (_, extension) = nystrom_extended(&distances, Regularization::default(), 3).unwrap();
     assert!(matches!(
         extension.place(&Matrix::zeros(2, 9)),
         Err(NmdsError::Linalg(LinalgError::Shape { .. }))

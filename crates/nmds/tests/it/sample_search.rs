@@ -14,9 +14,9 @@ fn search(p: usize, power: f64, unit: f64, limit: usize, seed: u64) -> Found {
         let landmarks: Vec<usize> = (0..n.min(p)).map(|i| (i * 37) % p).collect();
         Ok(LandmarkDistances::new(landmarks.clone(), columns(&landmarks)).unwrap())
     };
-    let options = NystromOptions::default();
-    let embed = |distances: &LandmarkDistances| nystrom(distances, &options);
-    let search = SampleSearch { first: options.first_samples(), limit, seed, embed: &embed };
+    let regularization = Regularization::default();
+    let embed = |distances: &LandmarkDistances| nystrom(distances, regularization, 3);
+    let search = SampleSearch { first: regularization.first_samples(3), limit, seed, embed: &embed };
     search.run::<NmdsError>(landmarks, |rows| Ok(columns(rows))).unwrap()
 }
 

@@ -47,9 +47,7 @@ fn chord(p: usize) -> impl Fn(usize, usize) -> f64 {
 
 /// The embedding in the plane of arcs of a ring of 60 points, from every sixth of them and `m` eigenpairs.
 fn of_arcs(m: usize, mu: f64) -> Matrix {
-    let found =
-        spectral(&columns(60, 6, arc(60)), &Ring::new(60, m).basis(), &SpectralOptions { mu, dim: 2 });
-    found.unwrap().coords
+    spectral(&columns(60, 6, arc(60)), &Ring::new(60, m).basis(), mu, 2).unwrap().coords
 }
 
 fn gap(found: &Matrix, expected: &Matrix) -> f64 {
@@ -82,8 +80,7 @@ fn the_interpolant_satisfies_its_definition() {
 fn infinite_mu_interpolates_and_is_the_limit_of_large_mu() {
     let p = 60;
     let distances = columns(p, 6, chord(p));
-    let options = SpectralOptions { mu: f64::INFINITY, dim: 2 };
-    let found = spectral(&distances, &Ring::new(p, 25).basis(), &options).unwrap();
+    let found = spectral(&distances, &Ring::new(p, 25).basis(), f64::INFINITY, 2).unwrap();
     let at_samples = found.coords.select_rows(distances.landmarks());
     let expected = Matrix::from_fn(10, 10, |i, j| chord(p)(6 * i, 6 * j));
     assert!((pairwise(&at_samples) - expected).amax() < 1e-10);
@@ -97,20 +94,16 @@ fn infinite_mu_interpolates_and_is_the_limit_of_large_mu() {
 fn impossible_options_are_rejected() {
     let p = 20;
     let distances = columns(p, 2, arc(p));
-    let embed = |m: usize, options: SpectralOptions| spectral(&distances, &Ring::new(p, m).basis(), &options);
-    let with = |mu| SpectralOptions { mu, dim: 3 };
+    let embed = |m: usize, mu, dim| spectral(&distances, &Ring::new(p, m).basis(), mu, dim);
     for mu in [0.0, -1.0] {
-        assert_eq!(embed(15, with(mu)), Err(NmdsError::BadSmoothness(mu)));
+        assert_eq!(embed(15, mu, 3), Err(NmdsError::BadSmoothness(mu)));
     }
-    assert!(matches!(embed(15, with(f64::NAN)), Err(NmdsError::BadSmoothness { .. })));
-    assert_eq!(
-        embed(15, SpectralOptions { dim: 11, ..Default::default() }),
-        Err(NmdsError::BadDimension { dim: 11, limit: 10 })
-    );
-    assert_eq!(embed(3, with(1.0)), Err(NmdsError::BadDimension { dim: 3, limit: 2 }));
+    assert!(matches!(embed(15, f64::NAN, 3), Err(NmdsError::BadSmoothness { .. })));
+    assert_eq!(embed(15, 1.0, 11), Err(NmdsError::BadDimension { dim: 11, limit: 10 }));
+    assert_eq!(embed(3, 1.0, 3), Err(NmdsError::BadDimension { dim: 3, limit: 2 }));
     let other = Ring::new(19, 15);
     assert_eq!(
-        spectral(&distances, &other.basis(), &Default::default()),
+        spectral(&distances, &other.basis(), 1.0, 3),
         Err(NmdsError::PointMismatch { given: 19, n_points: 20 })
     );
     // A second function in the kernel is zero at all samples.
@@ -120,6 +113,6 @@ fn impossible_options_are_rejected() {
     let mut values = ring.values.clone();
     values[1] = 0.0;
     let basis = SpectralBasis { values: &values, vectors: &vectors, masses: &ring.masses };
-    let undetermined = spectral(&distances, &basis, &Default::default());
+    let undetermined = spectral(&distances, &basis, 1.0, 3);
     assert_eq!(undetermined, Err(NmdsError::NotDetermined(10)));
 }
