@@ -59,7 +59,7 @@ impl<'a> Gallery<'a> {
     /// The scores of a query that is left out itself. Of a shape that is alone in its class, nothing can be found.
     pub(crate) fn scores(&self, query: &GalleryQuery<'_>, distance: impl Fn(usize) -> f64) -> Scores {
         let distances: Vec<f64> = (0..self.described.len()).map(distance).collect();
-        Scores::of_query(&rank_row(&distances, query.own), query.own, &self.labels).unwrap_or_default()
+        Scores::for_query(&rank_row(&distances, query.own), query.own, &self.labels).unwrap_or_default()
     }
 
     /// Whether a shape of the gallery has the class of the query.

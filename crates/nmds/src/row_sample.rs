@@ -31,11 +31,11 @@ const LEVEL: f64 = 0.5;
 impl RowSample {
     /// All rows: the stress is exact.
     pub fn all(n_points: usize) -> Self {
-        Self::of_rows((0..n_points).collect(), n_points)
+        Self::from_rows((0..n_points).collect(), n_points)
     }
 
     /// Takes these rows, which should be different and a random choice from all `n_points` rows.
-    pub fn of_rows(rows: Vec<usize>, n_points: usize) -> Self {
+    pub fn from_rows(rows: Vec<usize>, n_points: usize) -> Self {
         let (m, correction) = (rows.len(), 1.0 - rows.len() as f64 / n_points.max(1) as f64);
         Self { rows, weights: vec![1.0; m], offsets: Vec::new(), unit: None, correction }
     }

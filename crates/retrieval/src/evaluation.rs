@@ -84,10 +84,10 @@ pub fn evaluate(
     knn_k: usize,
     rank_by: RankBy,
 ) -> Result<Evaluation, RetrievalError> {
-    let plain = RankingEvaluation::of(distances, labels, knn_k)?;
+    let plain = RankingEvaluation::new(distances, labels, knn_k)?;
     let graph = match rank_by {
         RankBy::Plain => None,
-        RankBy::Graph => Some(RankingEvaluation::of(&GraphRankings::new(distances), labels, knn_k)?),
+        RankBy::Graph => Some(RankingEvaluation::new(&GraphRankings::new(distances), labels, knn_k)?),
     };
     Ok(Evaluation {
         n: distances.n_points(),
@@ -101,7 +101,7 @@ pub fn evaluate(
 
 impl RankingEvaluation {
     /// Classifies each shape whose class has more than two members by the first `knn_k` of all others.
-    fn of(rankings: &impl Rankings, labels: &Labels, knn_k: usize) -> Result<Self, RetrievalError> {
+    fn new(rankings: &impl Rankings, labels: &Labels, knn_k: usize) -> Result<Self, RetrievalError> {
         let scores = QueryScores::new(rankings, labels)?;
         let intervals = bootstrap(&scores, labels);
         let n_classes = labels.classes().len();

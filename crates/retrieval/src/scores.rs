@@ -29,7 +29,7 @@ pub struct Scores {
 impl Scores {
     /// The scores of the shape `query`, given its ranking of all other shapes. Returns `None` if no other shape
     /// is in its class.
-    pub fn of_query(ranking: &[Neighbor], query: usize, labels: &Labels) -> Option<Self> {
+    pub fn for_query(ranking: &[Neighbor], query: usize, labels: &Labels) -> Option<Self> {
         let class = labels.class(query);
         let relevant = labels.size(class) - 1;
         if relevant == 0 {
@@ -84,7 +84,7 @@ impl QueryScores {
     /// # Errors
     /// [`RetrievalError::LabelCount`], [`RetrievalError::NothingToScore`].
     pub fn new(rankings: &impl Rankings, labels: &Labels) -> Result<Self, RetrievalError> {
-        let score = |i: usize| Scores::of_query(&rankings.ranking(i), i, labels);
+        let score = |i: usize| Scores::for_query(&rankings.ranking(i), i, labels);
         Ok(Self { of: of_queries(rankings.n_points(), labels, score)? })
     }
 

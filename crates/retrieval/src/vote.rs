@@ -21,7 +21,7 @@ impl UnknownThreshold {
     ///
     /// Minimizes the sum of the two error rates; if a range of thresholds does, returns its middle. Without foreign
     /// distances, returns twice the largest own distance. Returns `None` without own distances.
-    pub fn of(own: &[f64], foreign: &[f64]) -> Option<Self> {
+    pub fn from_distances(own: &[f64], foreign: &[f64]) -> Option<Self> {
         let sorted = |distances: &[f64]| {
             let mut sorted: Vec<f64> = distances.iter().copied().filter(|d| d.is_finite()).collect();
             sorted.sort_by(f64::total_cmp);

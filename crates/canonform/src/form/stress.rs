@@ -158,7 +158,7 @@ impl SharedStress {
         let rows = sample_rows(p, ESTIMATE_ROWS, options.seed);
         let sources: Vec<VertexId> = rows.iter().copied().map(VertexId::from).collect();
         let distances = Box::new(LandmarkDistances::new(rows.clone(), solver.distance_columns(&sources)?)?);
-        Ok(Self { method, distances, sample: RowSample::of_rows(rows, p) })
+        Ok(Self { method, distances, sample: RowSample::from_rows(rows, p) })
     }
 
     /// The stress of coordinates.

@@ -403,7 +403,8 @@ impl ShapeSearch {
                 let relation = Relation::in_classes(distances, scale, Handedness::Unknown, classes);
                 // Only what has the same description may be called the same part without its mesh.
                 let is_part = found.are_parts && found.fused > 0.0;
-                let relation = if is_part { relation.of_parts() } else { relation }.named(&query.name, &id);
+                let relation =
+                    if is_part { relation.without_poses() } else { relation }.named(&query.name, &id);
                 let (fused, itself) = (found.fused, query.place.as_ref() == Some(&path));
                 let hit =
                     Hit { rank, id, label, itself, path, distance, fused, order, relation, comparison: None };

@@ -83,5 +83,5 @@ pub(crate) fn threshold<E>(
     let distances = |sq: fn(&Trial) -> f32| -> Vec<f64> {
         trials.iter().map(|trial| f64::from(sq(trial)).sqrt()).collect()
     };
-    Ok(UnknownThreshold::of(&distances(|trial| trial.own), &distances(|trial| trial.foreign)))
+    Ok(UnknownThreshold::from_distances(&distances(|trial| trial.own), &distances(|trial| trial.foreign)))
 }

@@ -31,7 +31,7 @@ fn both_equal_their_definitions_and_that_of_the_paper_the_norm_of_the_omitted_ei
 
 /// Different rows, all equally likely.
 fn equally_likely(n_points: usize, m: usize, seed: u64) -> RowSample {
-    RowSample::of_rows(sample_rows(n_points, m, seed), n_points)
+    RowSample::from_rows(sample_rows(n_points, m, seed), n_points)
 }
 
 /// Distances that are not Euclidean, their best embedding in the plane, and the distances from 8 of the points.

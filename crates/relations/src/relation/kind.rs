@@ -111,7 +111,7 @@ pub enum Change {
 
 impl Change {
     /// Of a mesh that is larger by a factor, beyond a tolerance, and perhaps a mirror image.
-    pub(super) fn of_similarity(scale: f64, tolerance: f64, mirrored: bool) -> Vec<Self> {
+    pub(super) fn from_similarity(scale: f64, tolerance: f64, mirrored: bool) -> Vec<Self> {
         let is_resized = scale.ln().abs() > tolerance;
         let changes = [(is_resized, Self::Scaled), (mirrored, Self::Mirrored)];
         changes.into_iter().filter_map(|(is_changed, change)| is_changed.then_some(change)).collect()

@@ -103,9 +103,9 @@ impl Relation {
         let (same_shape, same_class) = (evidence.same_shape, evidence.same_class);
         let (another_shape, another_class) = (same_class - same_shape, 1.0 - same_class);
         let (kind, confidence, changes) = if same_shape >= another_shape.max(another_class) {
-            evidence.units = UnitChange::of(scale, SIZE_OF_SURFACES);
+            evidence.units = UnitChange::from_scale(scale, SIZE_OF_SURFACES);
             let tolerance = ShapeMetric::SIZE_OF_POSES.ln();
-            let changes = Change::of_similarity(scale, tolerance, handedness == Handedness::Mirrored);
+            let changes = Change::from_similarity(scale, tolerance, handedness == Handedness::Mirrored);
             (RelationKind::OtherPose, same_shape, changes)
         } else if another_shape >= another_class {
             (RelationKind::SameClass, another_shape, Vec::new())
@@ -118,7 +118,7 @@ impl Relation {
 
     /// The relation of parts of machines: they do not bend, so that another pose is not what their distance may say.
     #[must_use]
-    pub fn of_parts(mut self) -> Self {
+    pub fn without_poses(mut self) -> Self {
         if self.kind == RelationKind::OtherPose {
             self.changes.clear();
             (self.kind, self.confidence) = (RelationKind::SameClass, self.evidence.same_class);
@@ -247,7 +247,7 @@ mod tests {
         );
         assert_eq!(at(20.0).to_string(), "b is of another class than a");
         assert!(at(20.0).reason().contains("another class above"));
-        let part = Relation::by_distance(ShapeDistance::default(), 1.0, Handedness::Unknown).of_parts();
+        let part = Relation::by_distance(ShapeDistance::default(), 1.0, Handedness::Unknown).without_poses();
         assert_eq!((part.in_brief(), part.kind), ("a similar shape".into(), RelationKind::SameClass));
     }
 }

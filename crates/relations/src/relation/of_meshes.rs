@@ -108,7 +108,7 @@ impl Relation {
         tolerance: f64,
     ) -> Self {
         self.evidence.scale = scale;
-        self.evidence.units = UnitChange::of(scale, tolerance);
+        self.evidence.units = UnitChange::from_scale(scale, tolerance);
         Self { kind, confidence, changes, ..self }
     }
 
@@ -132,7 +132,7 @@ impl Relation {
         let is_turned = reflected && is_symmetric(&b.surface);
         // Sizes are known as well as vertices agree.
         let tolerance = (SIZE_BY_DISTANCE * same.gap).clamp(ROUNDING, MAX_ROUNDING);
-        changes.extend(Change::of_similarity(scale, tolerance, reflected && !is_turned));
+        changes.extend(Change::from_similarity(scale, tolerance, reflected && !is_turned));
         changes.extend((is_turned || !same.same_faces).then_some(Change::Remeshed));
         let kind = match changes.last() {
             Some(Change::Scaled) => RelationKind::Scaled,
@@ -149,7 +149,7 @@ impl Relation {
         let PartCopy { scale, mirrored, gap, confidence } = copy;
         let scale = if parts.whole == Side::Second { scale } else { 1.0 / scale };
         let tolerance = gap.map_or(MAX_ROUNDING, size_tolerance);
-        let mut changes = Change::of_similarity(scale, tolerance, mirrored);
+        let mut changes = Change::from_similarity(scale, tolerance, mirrored);
         changes.extend(gap.map(|_| Change::Remeshed));
         let all = parts.found == parts.components && parts.found > 1;
         let kind = if all { RelationKind::Copies } else { RelationKind::PartOf };
@@ -170,7 +170,7 @@ impl Relation {
         }
         let scale = map.scale * b.size() / a.size();
         let tolerance = size_tolerance(gap);
-        let mut changes = Change::of_similarity(scale, tolerance, map.reflected);
+        let mut changes = Change::from_similarity(scale, tolerance, map.reflected);
         let kind = if change == Change::Noisy { RelationKind::Noisy } else { RelationKind::Remeshed };
         changes.push(change);
         // One of the two has noise, and the other has not.
@@ -192,7 +192,7 @@ impl Relation {
         if let Some((cut, factor)) = piece {
             let scale = if cut.whole == Side::First { factor } else { 1.0 / factor };
             self.evidence.cut = Some(cut);
-            let mut changes = Change::of_similarity(scale, MAX_ROUNDING, false);
+            let mut changes = Change::from_similarity(scale, MAX_ROUNDING, false);
             changes.push(Change::Cut);
             return self.found(RelationKind::PartOf, CUT, changes, scale, MAX_ROUNDING);
         }
@@ -202,6 +202,6 @@ impl Relation {
             self.changes.clear();
             return Self { kind: RelationKind::Variant, confidence: VARIANT, ..self };
         }
-        if meshes.iter().any(|mesh| mesh.is_mechanical()) { self.of_parts() } else { self }
+        if meshes.iter().any(|mesh| mesh.is_mechanical()) { self.without_poses() } else { self }
     }
 }

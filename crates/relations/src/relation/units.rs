@@ -36,11 +36,11 @@ impl UnitChange {
     /// ```
     /// use canonform_relations::UnitChange;
     ///
-    /// assert_eq!(UnitChange::of(25.4, 1e-4).unwrap().to_string(), "inches to millimetres");
-    /// assert_eq!(UnitChange::of(0.001, 1e-4).unwrap().to_string(), "millimetres to metres");
-    /// assert_eq!(UnitChange::of(2.0, 1e-4), None);
+    /// assert_eq!(UnitChange::from_scale(25.4, 1e-4).unwrap().to_string(), "inches to millimetres");
+    /// assert_eq!(UnitChange::from_scale(0.001, 1e-4).unwrap().to_string(), "millimetres to metres");
+    /// assert_eq!(UnitChange::from_scale(2.0, 1e-4), None);
     /// ```
-    pub fn of(scale: f64, tolerance: f64) -> Option<Self> {
+    pub fn from_scale(scale: f64, tolerance: f64) -> Option<Self> {
         Self::all().find(|(_, factor)| (scale / factor).ln().abs() <= tolerance).map(|(change, _)| change)
     }
 }
@@ -67,11 +67,11 @@ mod tests {
             [("inches", "millimetres", 25.4), ("metres", "millimetres", 1000.0), ("feet", "inches", 12.0)];
         let more = [("metres", "feet", 1.0 / 0.3048), ("centimetres", "millimetres", 10.0)];
         for (from, to, factor) in named.into_iter().chain(more) {
-            assert_eq!(UnitChange::of(factor * 1.00001, 1e-4), Some(UnitChange { from, to }));
-            assert_eq!(UnitChange::of(1.0 / factor, 1e-4), Some(UnitChange { from: to, to: from }));
+            assert_eq!(UnitChange::from_scale(factor * 1.00001, 1e-4), Some(UnitChange { from, to }));
+            assert_eq!(UnitChange::from_scale(1.0 / factor, 1e-4), Some(UnitChange { from: to, to: from }));
         }
         for scale in [1.0, 3.0, f64::NAN, 0.0] {
-            assert_eq!(UnitChange::of(scale, 0.01), None);
+            assert_eq!(UnitChange::from_scale(scale, 0.01), None);
         }
     }
 }

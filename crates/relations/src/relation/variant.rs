@@ -95,7 +95,7 @@ struct Dimensions {
 }
 
 impl Dimensions {
-    fn of(part: &MeshGeometry) -> Self {
+    fn new(part: &MeshGeometry) -> Self {
         let regions = &part.surface.regions().all;
         let mut found = Self {
             euler: euler_characteristic_if_closed(&part.mesh().topology()),
@@ -166,7 +166,7 @@ pub(super) fn differences([a, b]: [&MeshGeometry; 2], rms: Option<f64>) -> Optio
     if !(is_exact(a) && is_exact(b)) {
         return None;
     }
-    let [a, b] = [a, b].map(Dimensions::of);
+    let [a, b] = [a, b].map(Dimensions::new);
     let tolerance = EXACT * f64::max(a.size, b.size);
     let differs = |x: f64, y: f64| (x - y).abs() > tolerance + EQUAL * f64::max(x, y);
     let mut found = Vec::new();

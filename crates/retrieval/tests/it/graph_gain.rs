@@ -93,7 +93,7 @@ impl Set {
         let mean = |rankings: &dyn Rankings| {
             let scores: Vec<f64> = (0..self.points.len())
                 .into_par_iter()
-                .filter_map(|i| Some(Scores::of_query(&rankings.ranking(i), i, &labels)?.map))
+                .filter_map(|i| Some(Scores::for_query(&rankings.ranking(i), i, &labels)?.map))
                 .collect();
             scores.iter().sum::<f64>() / scores.len() as f64
         };

@@ -11,7 +11,7 @@ fn example() -> (DistanceMatrix, Labels) {
 }
 
 fn of_first(positions: &[f64], names: &[&str]) -> Option<Scores> {
-    Scores::of_query(&rank(&line(positions), 0), 0, &Labels::new(names))
+    Scores::for_query(&rank(&line(positions), 0), 0, &Labels::new(names))
 }
 
 #[test]

@@ -6,13 +6,13 @@ fn neighbors(distances: &[f64]) -> Vec<Neighbor> {
 
 #[test]
 fn the_threshold_separates_own_from_foreign_distances() {
-    let found = UnknownThreshold::of(&[1.0, 2.0, 1.5], &[4.0, 6.0]).unwrap();
+    let found = UnknownThreshold::from_distances(&[1.0, 2.0, 1.5], &[4.0, 6.0]).unwrap();
     assert_eq!(found, UnknownThreshold { distance: 3.0, missed: 0.0, mistaken: 0.0 });
     // Overlapping: missing the outlier costs less than accepting the foreign shapes.
-    let found = UnknownThreshold::of(&[1.0, 1.0, 1.0, 9.0], &[5.0, 6.0]).unwrap();
+    let found = UnknownThreshold::from_distances(&[1.0, 1.0, 1.0, 9.0], &[5.0, 6.0]).unwrap();
     assert_eq!((found.distance, found.missed, found.mistaken), (3.0, 0.25, 0.0));
-    assert_eq!(UnknownThreshold::of(&[], &[1.0]), None);
-    assert_eq!(UnknownThreshold::of(&[1.0, 2.0], &[]).unwrap().distance, 4.0);
+    assert_eq!(UnknownThreshold::from_distances(&[], &[1.0]), None);
+    assert_eq!(UnknownThreshold::from_distances(&[1.0, 2.0], &[]).unwrap().distance, 4.0);
 }
 
 #[test]
