@@ -1,11 +1,10 @@
 //! Which of several copies of one surface is the original.
 
 use descriptors::Side;
-use nalgebra::{Point3, Vector3};
-use rigid::Similarity;
+use nalgebra::Vector3;
 
 use super::geometry::{Exactness, MeshGeometry, ROUNDING};
-use super::mesh_change::ABOUT;
+use super::mesh_change::{ABOUT, Displacements};
 use super::same_surface::euler_characteristic_if_closed;
 use super::{Relation, RelationKind};
 
@@ -39,9 +38,6 @@ const FILE_ROUNDING: f64 = 3.0 * ROUNDING;
 /// What has more vertices than another copy by this factor is no remeshed copy of it.
 const FINER: usize = 3;
 
-/// Most faces at whose vertices gaps are measured.
-const MAX_FACES: usize = 1000;
-
 /// Why one copy of a surface is more exact than another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Merit {
@@ -67,40 +63,9 @@ impl Merit {
     }
 }
 
-/// How far the vertices of a mesh are from the surface of another one.
-struct Gaps {
-    rms: f64,
-    kurtosis: f64,
-    /// Of the ends of edges, and how many there are.
-    correlation: f64,
-    n_edges: usize,
-}
-
-impl Gaps {
-    /// Of the vertices of evenly chosen faces, under the map from one mesh to the other.
-    fn new(from: &MeshGeometry, to: &MeshGeometry, map: &Similarity) -> Self {
-        let (mesh, tree) = (from.mesh(), to.surface.tree());
-        let gap = |p: Point3<f64>| {
-            let p = map.apply(&p);
-            tree.nearest(&p).map_or(Vector3::zeros(), |near| p - near.point)
-        };
-        let faces = (0..mesh.n_faces()).step_by(mesh.n_faces().div_ceil(MAX_FACES).max(1));
-        let (mut joint, mut squares, mut fourths) = (0.0, 0.0, 0.0);
-        let n_edges = 3 * faces.len();
-        for [a, b, c] in faces.map(|f| mesh.triangle(f).map(gap)) {
-            joint += a.dot(&b) + b.dot(&c) + c.dot(&a);
-            for square in [a, b, c].map(|gap| gap.norm_squared()) {
-                squares += square;
-                fourths += square * square;
-            }
-        }
-        let n = n_edges as f64;
-        let (rms, kurtosis) = ((squares / n).sqrt(), n * fourths / (squares * squares));
-        Self { rms, kurtosis, correlation: joint / squares, n_edges }
-    }
-
+impl Displacements {
     fn is_noise(&self) -> bool {
-        let limit = CORRELATION + 2.0 / (self.n_edges as f64).sqrt();
+        let limit = CORRELATION + 2.0 / self.n_edges.sqrt();
         self.correlation.abs() < limit && self.kurtosis < NORMAL_TAILS
     }
 
@@ -126,8 +91,10 @@ impl Relation {
     /// ```
     pub fn more_exact(&self, [a, b]: [&MeshGeometry; 2]) -> Option<(Side, Merit)> {
         let map = self.map.filter(|_| !self.kind.is_one_geometry());
-        let gaps = map.map(|map| [Gaps::new(a, b, &map), Gaps::new(b, a, &map.inverse())]);
-        let by_gaps = |is: &dyn Fn([&Gaps; 2]) -> bool| match &gaps {
+        let gaps = map.map(|map| {
+            [Displacements::from_surface(a, b, &map), Displacements::from_surface(b, a, &map.inverse())]
+        });
+        let by_gaps = |is: &dyn Fn([&Displacements; 2]) -> bool| match &gaps {
             Some([first, second]) => [is([first, second]), is([second, first])],
             None => [false; 2],
         };

@@ -26,6 +26,9 @@ pub(super) const SIZE_BY_DISTANCE: f64 = 10.0;
 /// Most components that are compared on their own, the largest by area.
 const MAX_COMPONENTS: usize = 200;
 
+/// Most faces at whose corners two meshes are compared. A limit of effort.
+const MAX_FACES: usize = 2000;
+
 /// The least share of the whole area of a component that is compared on its own. A safety limit: it saves time.
 const MIN_COMPONENT: f64 = 1e-3;
 
@@ -142,6 +145,11 @@ impl MeshGeometry {
     /// Number of faces, without degenerate and duplicate ones.
     pub fn n_faces(&self) -> usize {
         self.mesh().n_faces()
+    }
+
+    /// Evenly chosen faces.
+    pub(super) fn some_faces(&self) -> impl Iterator<Item = usize> + Clone {
+        (0..self.n_faces()).step_by(self.n_faces().div_ceil(MAX_FACES))
     }
 
     /// Number of connected components.

@@ -15,9 +15,9 @@ const DOUBLINGS: i32 = 7;
 /// vertices with normal noise, none is as far as 4.5 times its root mean square.
 const MAX_GAP: f64 = 0.75;
 
-/// Faces of a plane turn by less than this (cosine), also with noise, and most of its boundary is an edge that turns by more. As at
-/// sharp edges of parts, 40°.
-const MIN_COSINE: f64 = 0.766;
+/// Faces of a plane, and faces that lie on each other, turn by less than this (cosine), also with noise, and most of the boundary of a
+/// plane is an edge that turns by more. As at sharp edges of parts, 40°.
+pub(super) const MIN_COSINE: f64 = 0.766;
 
 /// The least share of the area that planes of a part have, the two ends of a shaft for example, and the least that each of them has: as
 /// much of that share.

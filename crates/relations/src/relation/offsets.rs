@@ -14,12 +14,7 @@ use surface::VertexId;
 
 use super::calibration::{FLUSH, STANDARD_ERRORS};
 use super::geometry::{MAX_ROUNDING, MeshGeometry};
-
-/// Normals of faces that lie on each other turn by less than this (cosine), also with noise. As at sharp edges of parts, 40°.
-const MIN_COSINE: f64 = 0.766;
-
-/// Most faces whose vertices are measured. A limit of effort.
-const MAX_FACES: usize = 4000;
+use super::noise::MIN_COSINE;
 
 /// Fewest vertices whose mean counts.
 const FEWEST: usize = 4;
@@ -91,7 +86,7 @@ fn contacts(from: &MeshGeometry, to: &MeshGeometry, map: &Similarity, noise: f64
     let own_chords = &from.surface.regions().chord_errors;
     let rounding = FLUSH + from.rounding() + to.rounding();
     let mut found: HashMap<(usize, VertexId), Contact> = HashMap::new();
-    for f in (0..from.n_faces()).step_by(from.n_faces().div_ceil(MAX_FACES)) {
+    for f in from.some_faces() {
         let corners = from.mesh().triangle(f).map(|p| map.apply(&p));
         let Some(own) = (corners[1] - corners[0]).cross(&(corners[2] - corners[0])).try_normalize(0.0) else {
             continue;

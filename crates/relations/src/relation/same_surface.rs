@@ -3,7 +3,6 @@
 //! Two triangulations of one surface differ by the error of flat triangles: at most the height of the arcs that stand over
 //! them. What else differs is a difference of the surfaces, and one that is measured anywhere is enough.
 
-use mesh::TriMesh;
 use nalgebra::Point3;
 use rigid::{Alignment, NearestPoints, Similarity};
 use surface::{Topology, VertexId};
@@ -97,18 +96,18 @@ fn worst([a, b]: [&MeshGeometry; 2], map: &Similarity) -> f64 {
         let allowed = rounding + ARCS * (error * map.scale + errors_b[near.face]);
         Some(near.sq_distance.sqrt() / allowed)
     };
-    probes(a.mesh(), errors_a).into_iter().filter_map(probe).fold(0.0, f64::max)
+    probes(a, errors_a).into_iter().filter_map(probe).fold(0.0, f64::max)
 }
 
-/// Corners, middles of edges and centers of at most 2,000 faces, with the least error of a face that each lies in: small features have
+/// Corners, middles of edges and centers of faces, with the least error of a face that each lies in: small features have
 /// them too, where points at random may miss them.
-fn probes(mesh: &TriMesh, errors: &[f64]) -> Vec<(Point3<f64>, f64)> {
-    let chosen = || (0..mesh.n_faces()).step_by(mesh.n_faces().div_ceil(2000));
+fn probes(geometry: &MeshGeometry, errors: &[f64]) -> Vec<(Point3<f64>, f64)> {
+    let (mesh, chosen) = (geometry.mesh(), geometry.some_faces());
     let of_face = |f: usize| {
         let [a, b, c] = mesh.faces[f];
         [[a, a], [b, b], [c, c], [a, b], [b, c], [c, a]].map(|[v, w]| ([v.min(w), v.max(w)], errors[f]))
     };
-    let mut shared: Vec<_> = chosen().flat_map(of_face).collect();
+    let mut shared: Vec<_> = chosen.clone().flat_map(of_face).collect();
     shared.sort_unstable_by(|(v, x), (w, y)| v.cmp(w).then(x.total_cmp(y)));
     shared.dedup_by_key(|(ends, _)| *ends);
     let center = |f: usize| {
@@ -119,7 +118,7 @@ fn probes(mesh: &TriMesh, errors: &[f64]) -> Vec<(Point3<f64>, f64)> {
         let [p, q] = ends.map(|v| mesh.positions[v.index()]);
         (nalgebra::center(&p, &q), error)
     };
-    shared.into_iter().map(middle).chain(chosen().map(center)).collect()
+    shared.into_iter().map(middle).chain(chosen.map(center)).collect()
 }
 
 /// Vertices less edges plus faces, if every edge has two faces.
