@@ -83,9 +83,6 @@ impl ShapeMetric {
     /// unit of differences in size. A convention: poses and scans of one body may well differ by 5 %.
     pub const SIZE_OF_POSES: f64 = 1.05;
 
-    /// An answer is [certain](Boundary::CERTAIN) if it is at least this probable.
-    pub const CERTAIN: f64 = Boundary::CERTAIN;
-
     /// Length of a fused vector without the size.
     pub const FUSED_LENGTH: usize = {
         let mut sum = 0;
@@ -291,7 +288,7 @@ mod tests {
         let at = |combined| ShapeDistance { fused: combined, combined };
         let mut last = at(0.0);
         // Not even distance 0 proves one shape.
-        assert!(last.is_same_shape() && last.same_shape() < ShapeMetric::CERTAIN && last.same_class() > 0.99);
+        assert!(last.is_same_shape() && last.same_shape() < Boundary::CERTAIN && last.same_class() > 0.99);
         for i in 1..4000 {
             let combined = f64::from(i) * 0.005;
             let next = at(combined);

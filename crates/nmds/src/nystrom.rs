@@ -77,7 +77,7 @@ pub fn nystrom_extended(
     let inverse = regularization.pseudo_inverse(&block, unit, rank)?;
 
     let means = sq_means(distances, unit)?;
-    let w = triangle(distances, unit, &means, Some(&inverse.basis))?;
+    let w = triangle(distances, unit, &means, &inverse.basis)?;
     let inverse = inverse.without_rounding(&w, distances);
     let core = symmetrized(inverse.core()) * -0.5;
     let inner = symmetrized(&w * &core * w.transpose());

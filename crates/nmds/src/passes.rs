@@ -35,22 +35,19 @@ pub(crate) fn sq_means(distances: &LandmarkDistances, unit: f64) -> Result<Vec<f
     Ok(means)
 }
 
-/// The rows of squared distances minus `shift`, times `basis` (n x m; the identity if there is none).
+/// The rows of squared distances minus `shift`, times `basis` (n x m).
 fn transformed(
     distances: &LandmarkDistances,
     unit: f64,
     shift: &[f64],
-    basis: Option<&Matrix>,
+    basis: &Matrix,
     rows: std::ops::Range<usize>,
 ) -> Result<Matrix, LinalgError> {
     let mut block = squares(distances, unit, rows)?;
     for (mut column, shift) in block.column_iter_mut().zip(shift) {
         column.add_scalar_mut(-shift);
     }
-    Ok(match basis {
-        Some(basis) => block * basis,
-        None => block,
-    })
+    Ok(block * basis)
 }
 
 /// The triangular factor `W` of the QR decomposition of `(R - 1 shift') basis`, with `R` the squared distances, up to the
@@ -60,7 +57,7 @@ pub(crate) fn triangle(
     distances: &LandmarkDistances,
     unit: f64,
     shift: &[f64],
-    basis: Option<&Matrix>,
+    basis: &Matrix,
 ) -> Result<Matrix, LinalgError> {
     let blocks = distances.blocks();
     let of_group = |group: &[std::ops::Range<usize>]| {
@@ -77,8 +74,7 @@ pub(crate) fn triangle(
     while factors.len() > 1 {
         factors = factors.par_chunks(GROUP).map(|group| triangular_factor(&stacked(group.iter()))).collect();
     }
-    let n = basis.map_or(distances.n_landmarks(), Matrix::ncols);
-    Ok(factors.pop().unwrap_or_else(|| Matrix::zeros(0, n)))
+    Ok(factors.pop().unwrap_or_else(|| Matrix::zeros(0, basis.ncols())))
 }
 
 /// Matrices on top of each other.
@@ -104,7 +100,7 @@ pub(crate) fn product(
     let mut result = Matrix::zeros(distances.n_points(), basis.ncols());
     for batch in distances.blocks().chunks(BATCH) {
         let of_block = |rows: &std::ops::Range<usize>| {
-            Ok((rows.start, transformed(distances, unit, shift, Some(basis), rows.clone())?))
+            Ok((rows.start, transformed(distances, unit, shift, basis, rows.clone())?))
         };
         let blocks = batch.par_iter().map(of_block).collect::<Result<Vec<_>, LinalgError>>()?;
         for (start, block) in blocks {

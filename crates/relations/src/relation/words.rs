@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use descriptors::{ShapeMetric, Side};
+use descriptors::{Boundary, ShapeMetric, Side};
 use rigid::Gap;
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
@@ -17,7 +17,7 @@ impl Display for Relation {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let [a, b] = &self.names;
         let probably = self.probably();
-        let perhaps_same = self.evidence.same_shape > 1.0 - ShapeMetric::CERTAIN;
+        let perhaps_same = self.evidence.same_shape > 1.0 - Boundary::CERTAIN;
         match (self.kind, self.evidence.parts) {
             (RelationKind::IdenticalFile, _) => write!(f, "{b} is the same file as {a}"),
             (RelationKind::IdenticalGeometry, _) if self.changes.is_empty() => {
@@ -118,7 +118,7 @@ impl Relation {
             (RelationKind::Different, None) => 1.0 - self.evidence.same_shape,
             _ => self.confidence,
         };
-        if certainty < ShapeMetric::CERTAIN { "probably " } else { "" }
+        if certainty < Boundary::CERTAIN { "probably " } else { "" }
     }
 
     /// What was said, and all changes.
