@@ -193,28 +193,19 @@ impl MeshGeometry {
             if self.n_components() < 2 {
                 return Vec::new();
             }
-            let mut parts = vec![TriMesh::default(); self.n_components()];
-            let mut number = Vec::with_capacity(self.n_vertices());
-            for (v, p) in self.mesh().positions.iter().enumerate() {
-                // No face has the number of a vertex without faces.
-                let component = self.components.of(VertexId::from(v));
-                let Some(part) = component.map(|component| &mut parts[component]) else {
-                    number.push(VertexId(u32::MAX));
-                    continue;
-                };
-                number.push(VertexId::from(part.n_vertices()));
-                part.positions.push(self.surface.center + p.coords * self.size());
-            }
-            let mut areas = vec![0.0; parts.len()];
+            let mut faces = vec![Vec::new(); self.n_components()];
+            let mut areas = vec![0.0; faces.len()];
             for (face, area) in self.mesh().faces.iter().zip(self.mesh().face_areas()) {
-                let Some(label) = self.components.of(face[0]) else { continue };
-                parts[label].faces.push(face.map(|v| number[v.index()]));
-                areas[label] += area;
+                let Some(component) = self.components.of(face[0]) else { continue };
+                faces[component].push(*face);
+                areas[component] += area;
             }
             let mut order: Vec<usize> = (0..areas.len()).filter(|&i| areas[i] >= MIN_COMPONENT).collect();
             order.sort_by(|&i, &j| areas[j].total_cmp(&areas[i]).then(i.cmp(&j)));
+            let mut whole = self.to_mesh();
             let part = |&i: &usize| {
-                let surface = RigidSurface::new(std::mem::take(&mut parts[i]))?;
+                whole.faces = std::mem::take(&mut faces[i]);
+                let surface = RigidSurface::new(whole.without_unused_vertices())?;
                 Some(Self::from_surface(surface, self.farthest))
             };
             order.iter().take(MAX_COMPONENTS).filter_map(part).collect()
