@@ -5,7 +5,6 @@ use nalgebra::Vector3;
 
 use super::geometry::{Exactness, MeshGeometry, ROUNDING};
 use super::mesh_change::{ABOUT, Displacements};
-use super::same_surface::euler_characteristic_if_closed;
 use super::{Relation, RelationKind};
 
 /// Normals that differ by less than this (sine) are one: the rounding of files turns small faces by as much. A tolerance.
@@ -197,7 +196,7 @@ impl MeshGeometry {
                 a.cross(&b).norm().atan2(a.dot(&b)) * (p - q).norm()
             });
             Exactness {
-                is_closed: euler_characteristic_if_closed(&topology).is_some(),
+                is_closed: self.closed().is_some(),
                 n_needed: around.iter().filter(|known| known.len() == 3).count(),
                 bending: turns.sum(),
             }

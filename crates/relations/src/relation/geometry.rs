@@ -9,7 +9,7 @@ use nalgebra::Point3;
 use rigid::RigidSurface;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use surface::{Components, VertexId, components_of_faces};
+use surface::{Components, EdgeId, VertexId, components_of_faces};
 
 /// How coarsely files round coordinates, relative to the largest coordinate: text with six digits, twice. Numbers of 32 bits
 /// are finer. A tolerance of rounding.
@@ -175,6 +175,16 @@ impl MeshGeometry {
     pub fn n_bytes(&self) -> usize {
         // With the tree, the samples and the components, which are made when they are needed.
         100 * self.n_vertices() + 250 * self.n_faces()
+    }
+
+    /// The enclosed volume at unit area, and the Euler characteristic; `None` unless every edge has two faces.
+    pub(super) fn closed(&self) -> Option<(f64, isize)> {
+        let topology = self.mesh().topology();
+        let [n_vertices, n_edges, n_faces] =
+            [topology.n_vertices(), topology.n_edges(), topology.n_faces()].map(|n| n as isize);
+        let mut edges = (0..topology.n_edges()).map(EdgeId::from);
+        let is_closed = edges.all(|edge| topology.edge_corners(edge).len() == 2);
+        is_closed.then(|| (self.mesh().signed_volume().abs(), n_vertices - n_edges + n_faces))
     }
 
     /// Whether planes and cylinders with sharp edges between them make up the surface, as in parts of machines.

@@ -4,7 +4,7 @@ use rigid::{MAX_DEVIATION, axis_deviation, rms_radius};
 
 use super::calibration::{ARCS, EXACT, MAX_NOISE};
 use super::geometry::MeshGeometry;
-use super::same_surface::{allowed_in_bodies, euler_characteristic_if_closed, rms_chord_error};
+use super::same_surface::{allowed_in_bodies, rms_chord_error};
 
 /// Spreads of closed bodies differ by less than this multiple of what copies may be apart, both as shares of the rms radius: each
 /// of the two by once of it at most (Minkowski), and as much again for the area that decimation takes from thin limbs.
@@ -74,11 +74,10 @@ impl MeshGeometry {
     /// Its invariants.
     pub fn invariants(&self) -> SurfaceInvariants {
         let is_mechanical = self.is_mechanical();
-        let volume = |euler| (self.mesh().signed_volume().abs(), euler);
         SurfaceInvariants {
             n_vertices: self.n_vertices(),
             spreads: self.surface.axis_std,
-            closed: euler_characteristic_if_closed(&self.mesh().topology()).map(volume),
+            closed: self.closed(),
             chords: rms_chord_error(self),
             is_mechanical,
             is_noisy: self.is_noisy(),

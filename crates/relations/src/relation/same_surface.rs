@@ -5,7 +5,7 @@
 
 use nalgebra::Point3;
 use rigid::{Alignment, NearestPoints, Similarity};
-use surface::{Topology, VertexId};
+use surface::VertexId;
 
 use super::Change;
 use super::calibration::{
@@ -60,8 +60,7 @@ pub(super) fn rms_chord_error(mesh: &MeshGeometry) -> f64 {
 /// Mechanical surfaces: no point of either may be farther from the other than arcs, rounding and noise explain, no region where noise
 /// averages out, and closed ones have equally many handles.
 fn part_ratio(aligned: &Alignment, [a, b]: [&MeshGeometry; 2], noise: [f64; 2]) -> f64 {
-    let handles = [a, b].map(|geometry| euler_characteristic_if_closed(&geometry.mesh().topology()));
-    if matches!(handles, [Some(x), Some(y)] if x != y) {
+    if matches!([a, b].map(MeshGeometry::closed), [Some((_, x)), Some((_, y))] if x != y) {
         return f64::INFINITY;
     }
     let worst = worst([a, b], &aligned.map).max(worst([b, a], &aligned.map.inverse()));
@@ -119,12 +118,4 @@ fn probes(geometry: &MeshGeometry, errors: &[f64]) -> Vec<(Point3<f64>, f64)> {
         (nalgebra::center(&p, &q), error)
     };
     shared.into_iter().map(middle).chain(chosen.map(center)).collect()
-}
-
-/// Vertices less edges plus faces, if every edge has two faces.
-pub(super) fn euler_characteristic_if_closed(topology: &Topology) -> Option<isize> {
-    let edges = 0..topology.n_edges();
-    let is_closed = edges.map(surface::EdgeId::from).all(|edge| topology.edge_corners(edge).len() == 2);
-    is_closed
-        .then(|| topology.n_vertices() as isize - topology.n_edges() as isize + topology.n_faces() as isize)
 }

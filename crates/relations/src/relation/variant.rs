@@ -7,7 +7,6 @@ use serde::Serialize;
 use super::calibration::{EXACT, FARTHEST};
 use super::geometry::MeshGeometry;
 use super::numbers::in_four_digits;
-use super::same_surface::euler_characteristic_if_closed;
 
 /// Dimensions that differ by less than this share are equal: arcs of few segments are measured a little too small. Half and twice
 /// as much change no answer.
@@ -89,8 +88,8 @@ struct Dimensions {
     extents: [f64; 3],
     /// Distances between neighboring planes in all directions, ascending.
     steps: Vec<f64>,
-    volume: Option<f64>,
-    euler: Option<isize>,
+    /// The volume and the Euler characteristic.
+    closed: Option<(f64, isize)>,
     size: f64,
 }
 
@@ -98,7 +97,7 @@ impl Dimensions {
     fn new(part: &MeshGeometry) -> Self {
         let regions = &part.surface.regions().all;
         let mut found = Self {
-            euler: euler_characteristic_if_closed(&part.mesh().topology()),
+            closed: part.closed().map(|(volume, euler)| (volume * part.size().powi(3), euler)),
             size: part.size(),
             ..Self::default()
         };
@@ -116,7 +115,6 @@ impl Dimensions {
             }
         }
         [&mut found.holes, &mut found.bosses].into_iter().for_each(|all| all.sort_by(f64::total_cmp));
-        found.volume = found.euler.map(|_| part.mesh().signed_volume().abs() * part.size().powi(3));
         let directions: Vec<Vector3<f64>> =
             part.surface.regions().directions().into_iter().map(|(d, _)| d).collect();
         found.steps = directions.iter().flat_map(|d| steps(regions, d)).map(|x| x * part.size()).collect();
@@ -200,13 +198,13 @@ pub(super) fn differences([a, b]: [&MeshGeometry; 2], rms: Option<f64>) -> Optio
         found.insert(0, Difference { what: Dimension::Holes, first, second });
     }
     if found.is_empty()
-        && let (Some(first), Some(second)) = (a.volume, b.volume)
+        && let (Some((first, _)), Some((second, _))) = (a.closed, b.closed)
         && (first - second).abs() > EQUAL * f64::max(first, second)
     {
         found.push(Difference { what: Dimension::Volume, first, second });
     }
     found.dedup();
-    let same_parts = same_build && (same_holes || a.euler != b.euler);
+    let same_parts = same_build && (same_holes || a.closed.map(|x| x.1) != b.closed.map(|x| x.1));
     let is_variant = (same_parts || rms.is_some_and(|rms| rms < NEAR)) && is_near && !found.is_empty();
     is_variant.then_some(found)
 }
