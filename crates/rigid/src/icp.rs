@@ -9,8 +9,8 @@ use crate::similarity::Similarity;
 const MIN_GAIN: f64 = 2e-3;
 
 /// The damping of steps in shares of the trace (Levenberg and Marquardt): a step that is too long is made again, shorter. Limits
-/// of effort.
-const MIN_DAMPING: f64 = 1e-9;
+/// of effort; bodies that are round may turn.
+pub const MIN_DAMPING: f64 = 1e-9;
 const MAX_DAMPING: f64 = 1e-2;
 
 /// How far two bodies are apart.
@@ -155,20 +155,32 @@ pub(crate) fn refine<B: Body>(a: &B, b: &B, start: Similarity, effort: Effort) -
     (map, error.sqrt())
 }
 
+/// A small motion and change of size: angles, a translation, and the logarithm of a factor.
+pub type SmallStep = SVector<f64, 7>;
+
+/// How far a small step moves a point along a normal, for each of its numbers.
+pub fn moved_along(at: &Point3<f64>, normal: &Vector3<f64>) -> SmallStep {
+    let [turned, [x, y, z]]: [[f64; 3]; 2] = [at.coords.cross(normal).into(), (*normal).into()];
+    SmallStep::from([turned[0], turned[1], turned[2], x, y, z, at.coords.dot(normal)])
+}
+
+/// The step that fits offsets along normals best, by weights; `damping` shortens it.
+pub fn fitted_step(rows: impl Iterator<Item = (SmallStep, f64, f64)>, damping: f64) -> Option<SmallStep> {
+    let (mut matrix, mut right) = (SMatrix::<f64, 7, 7>::zeros(), SmallStep::zeros());
+    for (row, offset, weight) in rows {
+        matrix += row * row.transpose() * weight;
+        right += row * offset * weight;
+    }
+    matrix += SMatrix::identity() * (damping * matrix.trace()).max(f64::MIN_POSITIVE);
+    Some(matrix.cholesky()?.solve(&right))
+}
+
 /// The small similarity that brings points nearest to the tangent planes of their partners; `damping` shortens it.
 fn tangent_step(contacts: &[Contact], damping: f64) -> Option<Similarity> {
-    let mut matrix = SMatrix::<f64, 7, 7>::zeros();
-    let mut right = SVector::<f64, 7>::zeros();
-    for Contact { from, to, normal, .. } in contacts {
-        let mut row = SVector::<f64, 7>::zeros();
-        row.fixed_rows_mut::<3>(0).copy_from(&from.coords.cross(normal));
-        row.fixed_rows_mut::<3>(3).copy_from(normal);
-        row[6] = from.coords.dot(normal);
-        matrix += row * row.transpose();
-        right += row * (to - from).dot(normal);
-    }
-    matrix += SMatrix::identity() * (damping * matrix.trace().max(f64::MIN_POSITIVE));
-    let step = matrix.cholesky()?.solve(&right);
+    let row = |Contact { from, to, normal, .. }: &Contact| {
+        (moved_along(from, normal), (to - from).dot(normal), 1.0)
+    };
+    let step = fitted_step(contacts.iter().map(row), damping)?;
     let turn = Rotation3::new(step.fixed_rows::<3>(0).into_owned());
     // A linear step by more is no small one.
     let scale = step[6].clamp(-0.2, 0.2).exp();

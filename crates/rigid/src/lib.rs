@@ -24,7 +24,7 @@ pub use align_points::{Reflections, align_points, alignments};
 pub use align_surfaces::{MAX_DEVIATION, align_surfaces, axis_deviation, is_symmetric};
 pub use farthest_points::{FarthestPoints, farthest_points, farthest_points_by};
 pub use handedness::{Handedness, OrientedPoints};
-pub use icp::{Alignment, Gap};
+pub use icp::{Alignment, Gap, MIN_DAMPING, SmallStep, fitted_step, moved_along};
 pub use nearest::{NearestPoints, NoExtent};
 pub use point_set::PointSet;
 pub use rigid_surface::{RigidSurface, rms_radius};

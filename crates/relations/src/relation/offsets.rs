@@ -8,8 +8,8 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use mesh::RegionShape;
-use nalgebra::{Point3, SMatrix, SVector, Vector3};
-use rigid::Similarity;
+use nalgebra::{Point3, Vector3};
+use rigid::{MIN_DAMPING, Similarity, fitted_step, moved_along};
 use surface::VertexId;
 
 use super::calibration::{FLUSH, STANDARD_ERRORS};
@@ -18,9 +18,6 @@ use super::noise::MIN_COSINE;
 
 /// Fewest vertices whose mean counts.
 const FEWEST: usize = 4;
-
-/// The damping of the motion, in shares of the trace: parts that are round may turn.
-const DAMPING: f64 = 1e-9;
 
 /// Where a vertex of one mesh is beside a region of the other. Of vertices with several faces there, sums over them.
 struct Contact {
@@ -140,22 +137,12 @@ fn bulge(corners: &[Point3<f64>; 3], p: &Point3<f64>, normal: &Vector3<f64>) -> 
 
 /// Takes the small motion and change of size from offsets that explains most of them.
 fn without_motion(contacts: &mut [(usize, Contact)], noise: [f64; 2]) -> Option<()> {
-    let row = |Contact { at, normal, .. }: &Contact| {
-        let mut row = SVector::<f64, 7>::zeros();
-        row.fixed_rows_mut::<3>(0).copy_from(&at.coords.cross(normal));
-        row.fixed_rows_mut::<3>(3).copy_from(normal);
-        row[6] = at.coords.dot(normal);
-        row
+    let row = |contact: &Contact| moved_along(&contact.at, &contact.normal);
+    let weighted = |(_, contact): &(usize, Contact)| {
+        let variance = noise[0].powi(2) + noise[1].powi(2) + contact.allowed.powi(2);
+        (row(contact), contact.offset, 1.0 / variance)
     };
-    let (mut matrix, mut right) = (SMatrix::<f64, 7, 7>::zeros(), SVector::<f64, 7>::zeros());
-    for (_, contact) in contacts.iter() {
-        let weight = 1.0 / (noise[0].powi(2) + noise[1].powi(2) + contact.allowed.powi(2));
-        let row = row(contact);
-        matrix += row * row.transpose() * weight;
-        right += row * contact.offset * weight;
-    }
-    matrix += SMatrix::identity() * (DAMPING * matrix.trace()).max(f64::MIN_POSITIVE);
-    let step = matrix.cholesky()?.solve(&right);
+    let step = fitted_step(contacts.iter().map(weighted), MIN_DAMPING)?;
     contacts.iter_mut().for_each(|(_, contact)| contact.offset -= row(contact).dot(&step));
     Some(())
 }
