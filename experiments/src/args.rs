@@ -49,9 +49,6 @@ pub(crate) struct RunArgs {
     /// Folder for the results
     #[arg(short, long, default_value = OUTPUT, value_name = "OUT")]
     pub(crate) output: PathBuf,
-    /// Skip experiments that the folder already has, if the same version made them with the same shapes and seed
-    #[arg(long)]
-    pub(crate) resume: bool,
     /// Worker threads; 0 for all cores. Results do not depend on it
     #[arg(long, default_value_t = 0, value_name = "N")]
     pub(crate) threads: usize,

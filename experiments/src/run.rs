@@ -62,50 +62,34 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
         bail!("there is no experiment `{name}`; choose from {}", known.join(", "));
     }
     let is_wanted = |(name, ..): &Experiment| args.names.iter().any(|wanted| wanted == name || wanted == ALL);
-    let wanted = EXPERIMENTS.into_iter().filter(is_wanted);
-    let (kept, open): (Vec<_>, Vec<_>) = wanted.partition(|(name, ..)| args.resume && is_made(args, name));
-    for (name, ..) in kept {
-        note(&format!("{name} is there already, made with these options"));
-    }
-    if !open.is_empty() {
-        let bars = Bars::new(args.quiet);
-        let collection = SurfaceCollection::load(&args.source, &bars)?;
-        let specimens = specimens(&collection);
-        for (name, config, experiment) in open {
-            let (config, options) = Config::parse(name, config)?;
-            let context = Context {
-                config,
-                options,
-                collection: &collection,
-                specimens: &specimens,
-                seed: args.source.seed,
-                args,
-                observer: &bars,
-                start: Instant::now(),
-            };
-            let record = experiment(&context).and_then(|record| context.completed(record));
-            let record = record.with_context(|| format!("experiment {name}"))?;
-            bars.finish();
-            for e in record.expectations.iter().filter(|e| !e.held) {
-                let kind = if e.goal { "goal missed" } else { "not as expected" };
-                note(&format!("{kind}: {} is {}, {}", e.what, e.measured, e.expected));
-            }
-            record.save(&args.output, name)?;
-            if let Some(table) = record.tables.first() {
-                writeln!(std::io::stdout().lock(), "{}\n{}", table.caption, table.to_text())?;
-            }
+    let bars = Bars::new(args.quiet);
+    let collection = SurfaceCollection::load(&args.source, &bars)?;
+    let specimens = specimens(&collection);
+    for (name, config, experiment) in EXPERIMENTS.into_iter().filter(is_wanted) {
+        let (config, options) = Config::parse(name, config)?;
+        let context = Context {
+            config,
+            options,
+            collection: &collection,
+            specimens: &specimens,
+            seed: args.source.seed,
+            args,
+            observer: &bars,
+            start: Instant::now(),
+        };
+        let record = experiment(&context).and_then(|record| context.completed(record));
+        let record = record.with_context(|| format!("experiment {name}"))?;
+        bars.finish();
+        for e in record.expectations.iter().filter(|e| !e.held) {
+            let kind = if e.goal { "goal missed" } else { "not as expected" };
+            note(&format!("{kind}: {} is {}, {}", e.what, e.measured, e.expected));
+        }
+        record.save(&args.output, name)?;
+        if let Some(table) = record.tables.first() {
+            writeln!(std::io::stdout().lock(), "{}\n{}", table.caption, table.to_text())?;
         }
     }
     report(&args.output, None)
-}
-
-/// Whether the folder has the record of an experiment that this program would make again.
-fn is_made(args: &RunArgs, name: &str) -> bool {
-    let [version, commit] = [env!("CARGO_PKG_VERSION"), env!("CANONFORM_COMMIT")];
-    Record::read(args.output.join(format!("{name}.json"))).is_ok_and(|record| {
-        let made = record.provenance;
-        made.version == version && made.commit == commit && made.arguments == args.arguments()
-    })
 }
 
 /// The names and titles of all experiments.
