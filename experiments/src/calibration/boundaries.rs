@@ -5,12 +5,11 @@ use std::io::Write;
 
 use anyhow::Result;
 use canonform::{DescribeOptions, Observer, Surface, describe};
-use datasets::{CreatureOptions, creature_body, creature_plans};
+use datasets::creature_plans;
 use descriptors::{Boundary, PreparedShape, Sample, ShapeMetric, ShapePair};
 use rayon::prelude::*;
 
-use super::{held_out, print_reliability, rounded};
-use crate::families::coarse;
+use super::{creature, held_out, print_reliability, rounded};
 
 /// Vertices of the meshes.
 const VERTICES: [usize; 3] = [250, 1000, 5000];
@@ -55,10 +54,8 @@ fn described(n_plans: usize, number: usize) -> Result<Creature> {
     let (i, j) = (family / n_plans % 3, family / n_plans / 3);
     let shape = body * POSES + pose;
     let n_vertices = VERTICES[[i, j, i + j, i + 2 * j][shape] % VERTICES.len()];
-    let options = CreatureOptions { seed: 2, n_vertices: n_vertices.max(1000), ..Default::default() };
     // The rest pose is left out, and no pose is there twice.
-    let mesh = creature_body(family, body, 1 + shape, &options, &())?.mesh;
-    let mesh = if n_vertices < mesh.n_vertices() { coarse(&mesh, n_vertices) } else { mesh };
+    let mesh = creature(2, [family, body, 1 + shape], n_vertices)?;
     let options = DescribeOptions::default();
     let description = describe(&Surface::new(&mesh, &options.form.repair, &())?, &options, &())?;
     Ok(Creature { plan: family % n_plans, family, body, shape: options.prepare(&description)? })

@@ -9,11 +9,22 @@ use std::io::Write;
 
 use anyhow::Result;
 use canonform::Observer;
+use datasets::{CreatureOptions, creature_body};
 use descriptors::{Boundary, Sample};
+use mesh::TriMesh;
 use rayon::prelude::*;
+
+use crate::families::coarse;
 
 pub(crate) use relations::{LEFT, Truth, beyond_a_plane, of_parts, related, relations};
 pub(crate) use units::units;
+
+/// A body of a family of creatures in a pose, with about so many vertices.
+fn creature(seed: u64, [family, body, pose]: [usize; 3], n_vertices: usize) -> Result<TriMesh> {
+    let options = CreatureOptions { seed, n_vertices: n_vertices.max(1000), ..Default::default() };
+    let mesh = creature_body(family, body, pose, &options, &())?.mesh;
+    Ok(if n_vertices < mesh.n_vertices() { coarse(&mesh, n_vertices) } else { mesh })
+}
 
 /// As it is printed and used.
 fn rounded(Boundary { at, steepness, range }: Boundary) -> Boundary {

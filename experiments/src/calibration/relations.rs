@@ -9,16 +9,13 @@ use base::terminal::Bars;
 use canonform::Observer;
 use canonform::relations::{MeshGeometry, Relation, RelationKind};
 use canonform::rigid::Handedness;
-use datasets::{
-    CreatureOptions, Damage, MechanicalPart, PartMesh, creature_body, creature_plans, mechanical_parts,
-};
+use datasets::{Damage, MechanicalPart, PartMesh, creature_plans, mechanical_parts};
 use descriptors::{Boundary, Sample, ShapeDistance};
 use mesh::TriMesh;
 use rayon::prelude::*;
 use surface::VertexId;
 
-use super::{held_out, print_reliability, rounded};
-use crate::families::coarse;
+use super::{creature, held_out, print_reliability, rounded};
 use crate::parts::copies;
 
 /// Vertices of the bodies of a family, in turn.
@@ -145,11 +142,7 @@ fn of_bodies(family: usize, observer: &dyn Observer) -> Result<Vec<RelatedPair>>
     observer.step();
     let n_vertices = VERTICES[family % VERTICES.len()];
     let name = creature_plans()[family].to_owned();
-    let options = CreatureOptions { seed: 3, n_vertices: n_vertices.max(1000), ..Default::default() };
-    let generated = |[body, pose]: [usize; 2]| -> Result<TriMesh> {
-        let mesh = creature_body(family, body, pose, &options, &())?.mesh;
-        Ok(if n_vertices < mesh.n_vertices() { coarse(&mesh, n_vertices) } else { mesh })
-    };
+    let generated = |[body, pose]: [usize; 2]| creature(3, [family, body, pose], n_vertices);
     let meshes: Vec<TriMesh> =
         [[0, 0], [0, 1], [1, 0], [2, 0]].into_iter().map(generated).collect::<Result<_>>()?;
     let damaged =
