@@ -27,7 +27,7 @@ pub(crate) struct Look {
     /// The name of the values, beside a bar of their colors; `None` for no bar.
     bar: Option<String>,
     /// Points of the surface, and what they are called.
-    labels: Vec<([f64; 3], String)>,
+    labels: Vec<Label>,
     /// `None` for a transparent one.
     background: Option<[u8; 3]>,
 }
@@ -69,9 +69,8 @@ pub(crate) fn draw<'py>(
         }),
         ..usual
     };
-    let labels: Vec<Label> =
-        look.labels.into_iter().map(|(at, text)| Label { at: at.into(), text }).collect();
-    png(py, run(py, |observer| Ok(annotated(&mesh, &options, look.bar.as_deref(), &labels, observer)))?)
+    let (bar, labels) = (look.bar.as_deref(), &look.labels);
+    png(py, run(py, |observer| Ok(annotated(&mesh, &options, bar, labels, observer)))?)
 }
 
 /// Pictures at places in pixels of one picture, and titles by their middles and greatest widths.
@@ -81,12 +80,10 @@ pub(crate) fn figure<'py>(
     size: [u32; 2],
     background: Option<[u8; 3]>,
     pictures: Vec<(PyBackedBytes, [i64; 2])>,
-    titles: Vec<(String, [f64; 2], f64)>,
+    titles: Vec<Title>,
     type_size: f64,
 ) -> PyResult<Bound<'py, PyBytes>> {
     let background = background.map_or(Background::Transparent, Background::Color);
-    let titles: Vec<Title> =
-        titles.into_iter().map(|(text, middle, width)| Title { text, middle, width }).collect();
     let image = |(bytes, place): &(PyBackedBytes, [i64; 2])| Ok((RgbaImage::from_png(bytes)?, *place));
     let pictures = pictures.iter().map(image).collect::<Result<Vec<_>, std::io::Error>>();
     let pictures = pictures

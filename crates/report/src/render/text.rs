@@ -12,25 +12,11 @@ use crate::error::ReportError;
 use crate::figure::{Area, Bitmap, Drawn, INK, average, drop_of, pixels, scaled_text, text_width};
 use crate::image::RgbaImage;
 
-/// The text at a point of a mesh.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Label {
-    /// Where the point is.
-    pub at: Point3<f64>,
-    /// The text.
-    pub text: String,
-}
+/// A point of a mesh, and the text at it.
+pub type Label = ([f64; 3], String);
 
-/// A text in an image, no wider than this. It is written smaller otherwise.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Title {
-    /// The text.
-    pub text: String,
-    /// Its middle, in pixels from the left and the top.
-    pub middle: [f64; 2],
-    /// In pixels.
-    pub width: f64,
-}
+/// A text in an image: its middle, in pixels from the left and the top, and its greatest width. It is written smaller to fit.
+pub type Title = (String, [f64; 2], f64);
 
 /// Places pictures, given by their top left corners, and then titles of this type size in an image of this size. Pictures beyond
 /// the image are cut off.
@@ -57,9 +43,8 @@ pub fn collage(
             }
         }
     }
-    let texts = titles.iter().map(|title| {
-        let share = (title.width / width_of(&title.text, size)).min(1.0);
-        (title.text.as_str(), title.middle, share * size)
+    let texts = titles.iter().map(|(text, middle, width)| {
+        (text.as_str(), *middle, (width / width_of(text, size)).min(1.0) * size)
     });
     write(&mut image, background, &texts.collect::<Vec<_>>(), 0.0)?;
     Ok(image)
@@ -81,19 +66,18 @@ pub(super) fn write_labels(
     let camera = Camera::fit(mesh, &faces, &options.view, size);
     let nearest = DepthBuffer::draw(mesh, &faces, &camera, size, budget)?;
     let em = type_size(size);
-    let seen = |label: &&Label| {
-        let [x, y, depth] = camera.project(&label.at);
+    let seen = |(at, text): &'_ Label| {
+        let [x, y, depth] = camera.project(&Point3::from(*at));
         let [column, row] = [x, y].map(|at| at.max(0.0) as usize);
         let is_inside = column < nearest.size[0] && row < nearest.size[1];
         // Points lie on the surface, or are the middles of dots on it.
-        !is_inside || f64::from(nearest.depth[row * nearest.size[0] + column]) <= depth + em
+        let is_seen = !is_inside || f64::from(nearest.depth[row * nearest.size[0] + column]) <= depth + em;
+        is_seen.then(|| ([x, y], width_of(text, em)))
     };
-    let labels: Vec<&Label> = labels.iter().filter(seen).collect();
-    let points: Vec<_> =
-        labels.iter().map(|label| camera.project(&label.at)).map(|[x, y, _]| [x, y]).collect();
-    let widths: Vec<f64> = labels.iter().map(|label| width_of(&label.text, em)).collect();
+    let seen: Vec<_> = labels.iter().filter_map(|label| Some((seen(label)?, &label.1))).collect();
+    let (points, widths): (Vec<[f64; 2]>, Vec<f64>) = seen.iter().map(|(place, _)| *place).unzip();
     let middles = beside(&points, &widths, em, size.map(f64::from));
-    let texts = labels.iter().zip(middles).map(|(label, middle)| (label.text.as_str(), middle, em));
+    let texts = seen.iter().zip(middles).map(|((_, text), middle)| (text.as_str(), middle, em));
     write(image, options.background, &texts.collect::<Vec<_>>(), em / 6.0)
 }
 
@@ -258,7 +242,7 @@ mod tests {
         let options = RenderOptions { width: 300, height: 200, ..RenderOptions::default() };
         let plain = super::super::render(&sphere(12), &options, &()).unwrap();
         let mut image = plain.clone();
-        let label = |z: f64, text: &str| Label { at: Point3::new(0.0, 0.0, z), text: text.into() };
+        let label = |z: f64, text: &str| ([0.0, 0.0, z], text.to_owned());
         let labels = [label(1.0, "pole"), label(-1.0, "hidden")];
         write_labels(&mut image, &sphere(12), &options, &labels, &Budget::unlimited()).unwrap();
         let changed: Vec<usize> =
@@ -271,7 +255,7 @@ mod tests {
         let red = RgbaImage::new(2, 2, [255, 0, 0, 255]);
         let clear = RgbaImage::new(2, 2, [0, 0, 255, 0]);
         let placed = [(red, [1, 1]), (clear, [0, 0]), (RgbaImage::new(3, 1, [0, 255, 0, 255]), [-1, 29])];
-        let title = |width| [Title { text: "a long title".into(), middle: [20.0, 15.0], width }];
+        let title = |width| [("a long title".to_owned(), [20.0, 15.0], width)];
         let made = |width| collage([40, 30], Background::WHITE, &placed, (&title(width), 12.0)).unwrap();
         let image = made(18.0);
         assert_eq!(
