@@ -8,42 +8,24 @@ pub fn ticks([low, high]: [f64; 2], most: usize) -> Vec<f64> {
     RangedCoordf64::from(low..high).key_points(most)
 }
 
-/// The number format of an axis: a common power of ten and a number of decimals.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct NumberFormat {
-    exponent: i32,
-    decimals: usize,
-}
-
-impl NumberFormat {
-    /// The format with the fewest digits that tells all of `ticks` apart. Very large and very small ones share a
-    /// power of ten.
-    pub fn for_ticks(ticks: &[f64]) -> Self {
-        let largest = ticks.iter().fold(0.0_f64, |m, t| m.max(t.abs()));
-        let plain = largest == 0.0 || (0.01..10_000.0).contains(&largest);
-        let exponent = if plain { 0 } else { 3 * (largest.log10() / 3.0).floor() as i32 };
-        let unit = 10f64.powi(exponent);
-        let exact = |t: &f64, decimals: i32| {
-            let digits = t / unit * 10f64.powi(decimals);
-            (digits - digits.round()).abs() < 1e-6 * (largest / unit * 10f64.powi(decimals)).max(1.0)
-        };
-        let decimals = (0..9).find(|&d| ticks.iter().all(|t| exact(t, d))).unwrap_or(9);
-        Self { exponent, decimals: decimals as usize }
-    }
-
-    /// A number without the common power of ten.
-    pub fn write(self, value: f64) -> String {
-        signed(value / 10f64.powi(self.exponent), self.decimals)
-    }
-
-    /// The unit of the axis with the power of ten that [`NumberFormat::write`] leaves out. Either may be missing.
-    pub fn unit(self, unit: &str) -> String {
-        match (self.exponent, unit) {
-            (0, unit) => unit.to_owned(),
-            (exponent, "") => format!("×10{}", superscript(exponent)),
-            (exponent, unit) => format!("×10{}, {unit}", superscript(exponent)),
-        }
-    }
+/// Ticks with the fewest digits that tell all of them apart, and the unit of their axis, which may be missing. Very large and very
+/// small ones share a power of ten, which the unit has.
+pub fn tick_labels(ticks: &[f64], unit: &str) -> (Vec<String>, String) {
+    let largest = ticks.iter().fold(0.0_f64, |m, t| m.max(t.abs()));
+    let plain = largest == 0.0 || (0.01..10_000.0).contains(&largest);
+    let exponent = if plain { 0 } else { 3 * (largest.log10() / 3.0).floor() as i32 };
+    let power = 10f64.powi(exponent);
+    let exact = |t: &f64, decimals: i32| {
+        let digits = t / power * 10f64.powi(decimals);
+        (digits - digits.round()).abs() < 1e-6 * (largest / power * 10f64.powi(decimals)).max(1.0)
+    };
+    let decimals = (0..9).find(|&d| ticks.iter().all(|t| exact(t, d))).unwrap_or(9);
+    let unit = match (exponent, unit) {
+        (0, unit) => unit.to_owned(),
+        (exponent, "") => format!("×10{}", superscript(exponent)),
+        (exponent, unit) => format!("×10{}, {unit}", superscript(exponent)),
+    };
+    (ticks.iter().map(|tick| signed(tick / power, decimals as usize)).collect(), unit)
 }
 
 /// An exponent in superscript digits.
@@ -104,8 +86,7 @@ mod tests {
     use super::*;
 
     fn written(ticks: &[f64]) -> (Vec<String>, String) {
-        let numbers = NumberFormat::for_ticks(ticks);
-        (ticks.iter().map(|&t| numbers.write(t)).collect(), numbers.unit("m"))
+        tick_labels(ticks, "m")
     }
 
     #[test]
@@ -119,8 +100,7 @@ mod tests {
         assert_eq!(written(&[-0.001, 0.0015]), (vec!["\u{2212}1.0".into(), "1.5".into()], "×10⁻³, m".into()));
         assert_eq!(written(&[20_000.0, 40_000.0]), (vec!["20".into(), "40".into()], "×10³, m".into()));
         assert_eq!(written(&[2e12]).1, "×10¹², m");
-        assert_eq!(NumberFormat::for_ticks(&[2e12]).unit(""), "×10¹²");
-        assert_eq!(NumberFormat::for_ticks(&[2.0]).unit(""), "");
+        assert_eq!([2e12, 2.0].map(|tick| tick_labels(&[tick], "").1), ["×10¹²", ""]);
         assert_eq!(written(&[]), (vec![], "m".into()));
         assert_eq!(written(&[0.0]).0, ["0"]);
     }

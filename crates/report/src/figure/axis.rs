@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 
-use crate::numbers::{NumberFormat, superscript, ticks};
+use crate::numbers::{superscript, tick_labels, ticks};
 use crate::record::{Axis, AxisScale};
 
 /// The most ticks of an axis, about.
@@ -44,10 +44,9 @@ impl PlotAxis {
     }
 
     fn with_ticks(name: &str, unit: &str, range: [f64; 2], values: Vec<f64>) -> Self {
-        let numbers = NumberFormat::for_ticks(&values);
-        let ticks = values.into_iter().map(|value| (value, numbers.write(value)));
-        let name = with_unit(name, &numbers.unit(unit));
-        Self { name, scale: AxisScale::Linear, range, ticks: ticks.collect() }
+        let (labels, unit) = tick_labels(&values, unit);
+        let ticks = values.into_iter().zip(labels).collect();
+        Self { name: with_unit(name, &unit), scale: AxisScale::Linear, range, ticks }
     }
 
     /// The axis of a color bar, with a tick at both ends of a range that has no round values.
