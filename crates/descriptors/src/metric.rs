@@ -185,11 +185,6 @@ impl ShapeMetric {
         robust.hypot(Self::form_part(form_rms))
     }
 
-    /// The robust distance within a combined distance: the inverse of [`combined`](Self::combined).
-    pub fn robust_part(combined: f64, form_rms: f64) -> f64 {
-        (combined.powi(2) - Self::form_part(form_rms).powi(2)).max(0.0).sqrt()
-    }
-
     fn form_part(form_rms: f64) -> f64 {
         form_rms / Self::FORM_UNIT * Self::FORM_WEIGHT.sqrt()
     }
@@ -203,9 +198,10 @@ impl ShapeMetric {
         left * Self::FORM_UNIT / Self::FORM_WEIGHT.sqrt() * SLACK
     }
 
-    /// The distance between aligned forms below which shapes with this robust distance are at least as likely of one class as not;
-    /// 0 if their signatures alone are too far apart.
-    pub fn same_below(robust: f64) -> f64 {
+    /// The distance between aligned forms below which two shapes would be at least as likely of one class as not, from what they
+    /// have now: a combined distance, and one between aligned forms. 0 if their signatures alone are too far apart.
+    pub fn same_below(combined: f64, form_rms: f64) -> f64 {
+        let robust = (combined.powi(2) - Self::form_part(form_rms).powi(2)).max(0.0).sqrt();
         Self::form_limit(robust, Self::SAME_CLASS.at)
     }
 }
@@ -306,11 +302,12 @@ mod tests {
     fn a_combined_distance_has_its_parts_and_its_limit_is_that_of_the_form() {
         let at = ShapeMetric::SAME_CLASS.at;
         for robust in [0.0, 0.3 * at, 0.85 * at] {
-            let limit = ShapeMetric::same_below(robust);
+            let limit = ShapeMetric::form_limit(robust, at);
             let combined = ShapeMetric::combined(robust, limit);
             assert!((combined / at - 1.0).abs() < 1e-6 && combined > at);
-            assert!((ShapeMetric::robust_part(combined, limit) - robust).abs() < 1e-6);
+            assert!((ShapeMetric::same_below(combined, limit) - limit).abs() < 1e-6);
         }
-        assert_eq!((ShapeMetric::same_below(1.15 * at), ShapeMetric::robust_part(0.1, 9.0)), (0.0, 0.0));
+        assert_eq!(ShapeMetric::same_below(1.15 * at, 0.0), 0.0);
+        assert_eq!(ShapeMetric::same_below(0.1, 9.0), ShapeMetric::form_limit(0.0, at));
     }
 }

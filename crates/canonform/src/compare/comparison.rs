@@ -40,7 +40,7 @@ impl Comparison {
         Ok(Self {
             distance: raw.gap.rms,
             normalized_distance: best.gap.rms,
-            same_below: ShapeMetric::same_below(ShapeMetric::robust_part(distance.combined, best.gap.rms)),
+            same_below: ShapeMetric::same_below(distance.combined, best.gap.rms),
             shape_distance: distance,
             scale: pair.scale(),
             reflected,
