@@ -233,8 +233,7 @@ fn operators(
     spectrum: &LaplaceSpectrum,
     oriented: Option<&Oriented>,
 ) -> Vec<Operators> {
-    let all: Vec<usize> = (0..spectrum.vectors.nrows()).collect();
-    let kernels = wave_kernels(spectrum, &all);
+    let kernels = wave_kernels(spectrum);
     let some: Vec<usize> = (0..kernels.ncols()).step_by(KERNELS).collect();
     let kernels = kernels.select_columns(&some);
     let Some(curvatures) = curvatures else { return vec![Operators::new(spectrum, kernels, oriented)] };

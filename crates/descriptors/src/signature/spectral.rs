@@ -96,10 +96,9 @@ fn wave_filters(spectrum: &LaplaceSpectrum) -> Matrix {
     filters(spectrum, ENERGIES, |j, value| (exponent(j, value) - nearest[j]).exp())
 }
 
-/// The wave kernels of [`wave_kernel_signature`] at some vertices, one row for each vertex and one column for each energy.
-pub fn wave_kernels(spectrum: &LaplaceSpectrum, vertices: &[usize]) -> Matrix {
-    let at = spectrum.vectors.select_rows(vertices).map(|x| x * x);
-    at * wave_filters(spectrum)
+/// The wave kernels of [`wave_kernel_signature`], one row for each vertex and one column for each energy.
+pub fn wave_kernels(spectrum: &LaplaceSpectrum) -> Matrix {
+    spectrum.vectors.map(|x| x * x) * wave_filters(spectrum)
 }
 
 /// `n` values from one end to the other.
