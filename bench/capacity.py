@@ -6,7 +6,6 @@ the bytes of an index by the number of its shapes, search and merging among synt
 of meshes are then drawn from a log-normal distribution, and shards of them are handed to workers as a scheduler would.
 """
 import heapq
-import json
 import os
 import shutil
 import tempfile
@@ -118,21 +117,9 @@ def digits(x):
     return f"{x:,.0f}" if abs(x) >= 100 else f"{x:.3g}"
 
 
-def measured(record):
-    """The measurements in a file, or new ones, which are written to it."""
-    if os.path.exists(record):
-        with open(record) as file:
-            return json.load(file)
-    with tempfile.TemporaryDirectory() as folder:
-        found = describe(folder, SIZES), store(folder, STORED), search(folder, VECTORS)
-    if record:
-        with open(record, "w") as file:
-            json.dump(found, file)
-    return found
-
-
 def section(args):
-    described, stored, searched = measured(args.record)
+    with tempfile.TemporaryDirectory() as folder:
+        described, stored, searched = describe(folder, SIZES), store(folder, STORED), search(folder, VECTORS)
     random = np.random.default_rng(1)
     sizes = np.minimum(args.median * np.exp(args.sigma / 100 * random.standard_normal(SHAPES)), LARGEST)
     sizes = np.maximum(sizes, 200)
@@ -188,5 +175,4 @@ def section(args):
 
 
 if __name__ == "__main__":
-    # `record` names a file of measurements, which is read if it exists, and written if not.
-    benchmark(__doc__, section, median=5000, sigma=150, record="")
+    benchmark(__doc__, section, median=5000, sigma=150)

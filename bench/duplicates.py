@@ -93,15 +93,9 @@ def judged(found, of):
 
 
 def measure(folder, n, rounds):
-    at = os.path.join(folder, str(n))
-    index, truth = os.path.join(at, "all.canonform"), os.path.join(at, "of.json")
-    if not os.path.exists(index):
-        shapes, of = collection(at, n)
-        with open(truth, "w") as file:
-            json.dump(of, file)
-        run([CANONFORM, "index", "build", shapes, "-o", index, "-q"])
-    with open(truth) as file:
-        of = json.load(file)
+    shapes, of = collection(os.path.join(folder, str(n)), n)
+    index = shapes + ".canonform"
+    run([CANONFORM, "index", "build", shapes, "-o", index, "-q"])
     # The program ends with 1 if there are no duplicates.
     runs = [run([CANONFORM, "duplicates", index, "--json", "-q"], accepted=(0, 1)) for _ in range(rounds)]
     elapsed, processor, memory = (float(np.median([getattr(one, part) for one in runs]))
@@ -118,7 +112,7 @@ def measure(folder, n, rounds):
 
 def section(args):
     with tempfile.TemporaryDirectory() as folder:
-        sizes, seconds, cells = zip(*(measure(args.folder or folder, n, args.rounds) for n in (args.most // 5, args.most)))
+        sizes, seconds, cells = zip(*(measure(folder, n, args.rounds) for n in (args.most // 5, args.most)))
     exponent = np.log(seconds[1] / seconds[0]) / np.log(sizes[1] / sizes[0])
     beyond = seconds[1] * (10_000 / sizes[1]) ** exponent
     yield "## Duplicates in a collection"
@@ -129,5 +123,4 @@ def section(args):
 
 
 if __name__ == "__main__":
-    # Collections and indexes are kept in `folder`, if it is given, and found again.
-    benchmark(__doc__, section, rounds=3, most=1000, folder="")
+    benchmark(__doc__, section, rounds=3, most=1000)
