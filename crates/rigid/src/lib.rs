@@ -29,4 +29,4 @@ pub use nearest::{NearestPoints, NoExtent};
 pub use point_set::PointSet;
 pub use rigid_surface::{RigidSurface, rms_radius};
 pub use similarity::{Similarity, nearest_rotation};
-pub use triangles::{NearestOnSurface, TriangleTree};
+pub use triangles::{NearestOnSurface, OnTriangle, TriangleTree};

@@ -122,7 +122,10 @@ impl TriangleTree {
                     if height * height > best.sq_distance * (1.0 + ROUNDING) {
                         continue;
                     }
-                    let point = nearest_of_triangle(query, corners);
+                    let sides = corners.each_ref().map(|corner| corner.coords.as_slice());
+                    let [a, b, c] = OnTriangle::nearest(query.coords.as_slice(), sides).weights;
+                    let point =
+                        Point3::from(corners[0].coords * a + corners[1].coords * b + corners[2].coords * c);
                     let sq_distance = (point - query).norm_squared();
                     if sq_distance < best.sq_distance {
                         *best = Best { sq_distance, point, triangle };
@@ -156,32 +159,79 @@ impl Node {
     }
 }
 
-/// The point of a triangle nearest to `p` (Ericson 2005, section 5.1.5, `ericson2005` in `REFERENCES.bib`).
-fn nearest_of_triangle(p: &Point3<f64>, [a, b, c]: &[Point3<f64>; 3]) -> Point3<f64> {
-    let (ab, ac) = (b - a, c - a);
-    let along = |from: &Point3<f64>| (ab.dot(&(p - from)), ac.dot(&(p - from)));
-    let ((d1, d2), (d3, d4), (d5, d6)) = (along(a), along(b), along(c));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return *a;
+/// The point of a triangle that is nearest to another point, in any number of dimensions.
+#[derive(Debug, Clone, Copy)]
+pub struct OnTriangle {
+    /// The weights of the corners: not negative, with sum 1.
+    pub weights: [f64; 3],
+    /// Squared distance to it.
+    pub sq_distance: f64,
+}
+
+impl OnTriangle {
+    /// The point nearest to `query`.
+    pub fn nearest(query: &[f64], [p, q, r]: [&[f64]; 3]) -> Self {
+        // All that matters are products of the sides from `p` and of the way from `p` to the query.
+        let mut sums = [0.0; 6];
+        for (((x, p), q), r) in query.iter().zip(p).zip(q).zip(r) {
+            let (u, v, w) = (q - p, r - p, x - p);
+            for (sum, product) in sums.iter_mut().zip([u * u, u * v, v * v, u * w, v * w, w * w]) {
+                *sum += product;
+            }
+        }
+        let [uu, uv, vv, uw, vw, ww] = sums;
+        let at = |s: f64, t: f64| Self {
+            weights: [f64::max(1.0 - s - t, 0.0), s, t],
+            sq_distance: ww - 2.0 * (s * uw + t * vw) + s * s * uu + 2.0 * s * t * uv + t * t * vv,
+        };
+        let area = uu * vv - uv * uv;
+        let (s, t) = ((vv * uw - uv * vw) / area, (uu * vw - uv * uw) / area);
+        let is_inside = s >= 0.0 && t >= 0.0 && s + t <= 1.0;
+        // Of a thin triangle, a point of a side may be nearer than what rounding leaves of the one inside. A side without length is
+        // its first end.
+        let share = |along: f64, sq: f64| if sq > 0.0 { (along / sq).clamp(0.0, 1.0) } else { 0.0 };
+        let opposite = share(uu - uv + vw - uw, uu - 2.0 * uv + vv);
+        let sides = [at(share(uw, uu), 0.0), at(0.0, share(vw, vv)), at(1.0 - opposite, opposite)];
+        let start = if is_inside { at(s, t) } else { sides[0] };
+        sides
+            .into_iter()
+            .fold(start, |best, side| if side.sq_distance < best.sq_distance { side } else { best })
     }
-    if d3 >= 0.0 && d4 <= d3 {
-        return *b;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(weights: [f64; 3], corners: [&[f64]; 3]) -> Vec<f64> {
+        (0..corners[0].len()).map(|i| (0..3).map(|c| weights[c] * corners[c][i]).sum()).collect()
     }
-    if d6 >= 0.0 && d5 <= d6 {
-        return *c;
+
+    #[test]
+    fn the_nearest_point_of_a_triangle_is_no_farther_than_any_other_and_its_own_are_found_again() {
+        let wave = |seed: f64| -> Vec<f64> { (0..7).map(|i| (seed + 1.7 * f64::from(i)).sin()).collect() };
+        let grid = || (0..=20).flat_map(|i| (0..=20 - i).map(move |j| [i, j].map(|n| f64::from(n) / 20.0)));
+        for case in 0..40 {
+            let seed = 3.1 * f64::from(case);
+            let [p, q, r, x] = [0.0, 0.9, 2.3, 4.7].map(|shift| wave(seed * (1.0 + shift) + shift));
+            let corners = [&p[..], &q[..], &r[..]];
+            let found = OnTriangle::nearest(&x, corners);
+            assert!((found.weights.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+            let sq = |weights: [f64; 3]| -> f64 {
+                point(weights, corners).iter().zip(&x).map(|(a, b)| (a - b).powi(2)).sum()
+            };
+            assert!((sq(found.weights) - found.sq_distance).abs() < 1e-9);
+            for [s, t] in grid() {
+                let weights = [1.0 - s - t, s, t];
+                assert!(sq(weights) >= found.sq_distance - 1e-9);
+                let again = OnTriangle::nearest(&point(weights, corners), corners);
+                assert!(again.weights.iter().zip(weights).all(|(a, b)| (a - b).abs() < 1e-9), "{again:?}");
+            }
+        }
+        // Without area, and without length.
+        let [p, q] = [wave(0.0), wave(0.9)];
+        let found = OnTriangle::nearest(&q, [&p, &p, &q]);
+        assert!(found.sq_distance.abs() < 1e-12 && (found.weights[2] - 1.0).abs() < 1e-12);
+        assert_eq!(OnTriangle::nearest(&q, [&p, &p, &p]).weights[1..], [0.0, 0.0]);
     }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return a + ab * (d1 / (d1 - d3));
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return a + ac * (d2 / (d2 - d6));
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
-    }
-    let total = va + vb + vc;
-    a + ab * (vb / total) + ac * (vc / total)
 }
