@@ -12,9 +12,8 @@ use crate::canonical_form::CanonicalForm;
 use crate::error::DescriptorError;
 use rigid::nearest_rotation;
 
-/// Rounds that decide between the form and its mirror image, and rounds after that.
-const TRIALS: usize = 3;
-const ROUNDS: usize = 5;
+/// Rounds of rotations and points. A limit of time.
+const ROUNDS: usize = 8;
 
 impl CanonicalForm {
     /// The surface itself, bent as rigidly as possible towards this form: a canonical form that keeps features.
@@ -33,7 +32,7 @@ impl CanonicalForm {
     /// * The form is as good as its mirror image, the result is not: of both, the one nearer to the surface is taken, so that
     ///   results need no reflection to be aligned. Mirror images have mirrored results.
     /// * A form without a unit of length is scaled first, until its energy `Σ_ij w_ij |z_i - z_j|²` is that of the surface.
-    /// * Cost: one sparse factorization, and 11 solutions with three right-hand sides.
+    /// * Cost: one sparse factorization, and 16 solutions with three right-hand sides.
     ///
     /// # Errors
     /// [`DescriptorError::SizeMismatch`] unless the form has a point for every vertex; [`DescriptorError::NoExtent`];
@@ -71,16 +70,12 @@ impl CanonicalForm {
             Bent { points: target.clone(), target, misfit: f64::INFINITY }
         };
         let mut tried = [start(1.0), start(-1.0)];
-        for _ in 0..TRIALS {
+        for _ in 0..ROUNDS {
             tried.iter_mut().for_each(|bent| bending.improve(bent));
             observer.budget().check().map_err(LinalgError::from)?;
         }
         let [own, mirror] = tried;
-        let mut best = if own.misfit <= mirror.misfit { own } else { mirror };
-        for _ in 0..ROUNDS {
-            bending.improve(&mut best);
-            observer.budget().check().map_err(LinalgError::from)?;
-        }
+        let best = if own.misfit <= mirror.misfit { own } else { mirror };
         let points = best.points.iter().map(|p| p * unit).collect();
         let bent = Self::from_points(points, mesh.vertex_areas())?;
         Self::from_parts(bent.points().to_vec(), bent.weights().to_vec(), Some(unit * unit))
