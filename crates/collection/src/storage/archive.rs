@@ -29,7 +29,6 @@ pub(crate) struct Member {
 const MOST_NAMED: usize = 3;
 
 /// An opened archive.
-#[derive(Debug)]
 pub(crate) struct Archive {
     members: BTreeMap<String, Member>,
     /// Names of what is no member, with the reason.
@@ -37,18 +36,15 @@ pub(crate) struct Archive {
     data: Data,
 }
 
+/// Gives the content of a member, at most so many bytes.
+type ReadMember = dyn Fn(&Member, u64) -> Result<Vec<u8>, Fault> + Send + Sync;
+
 /// Where the bytes of members are.
-#[derive(Debug)]
 pub(super) enum Data {
-    Entries(Box<dyn Entries>),
+    /// Decompressed one by one.
+    Entries(Box<ReadMember>),
     /// As they are, one after the other.
     Plain(Window),
-}
-
-/// Members that are decompressed one by one.
-pub(super) trait Entries: std::fmt::Debug + Send + Sync {
-    /// The content of a member, at most so many bytes.
-    fn read(&self, member: &Member, most: u64) -> Result<Vec<u8>, Fault>;
 }
 
 impl Archive {
@@ -108,7 +104,7 @@ impl Archive {
         let missing = || io::Error::new(io::ErrorKind::NotFound, "the archive has no such member");
         let member = self.member(name).ok_or_else(|| cannot_read(missing()))?;
         let window = match &self.data {
-            Data::Entries(entries) => return entries.read(member, most).map_err(|what| fault(path, what)),
+            Data::Entries(read) => return read(member, most).map_err(|what| fault(path, what)),
             Data::Plain(window) => window,
         };
         let mut bytes = Vec::new();

@@ -8,13 +8,9 @@ use mesh_io::inflated_limit;
 use zip::ZipArchive;
 use zip::result::ZipError;
 
-use super::archive::{Archive, Data, Entries, Member};
+use super::archive::{Archive, Data, Member};
 use super::window::Window;
 use crate::dataset::SkipKind;
-
-/// A zip archive; clones share the directory and have positions of their own.
-#[derive(Debug, Clone)]
-pub(super) struct Zip(ZipArchive<Window>);
 
 pub(super) fn open(file: File) -> Result<Archive, Fault> {
     let window =
@@ -24,7 +20,9 @@ pub(super) fn open(file: File) -> Result<Archive, Fault> {
     }
     let zip = ZipArchive::new(window).map_err(damaged)?;
     let directory = zip.metadata();
-    let mut archive = Archive::of(Data::Entries(Box::new(Zip(zip))));
+    // Clones share the directory and have positions of their own.
+    let read = move |member: &Member, most| read(zip.clone(), member.at as usize, most);
+    let mut archive = Archive::of(Data::Entries(Box::new(read)));
     for at in 0..directory.len() {
         let entry = directory.entry(at).map_err(damaged)?;
         // Many programs write UTF-8 without saying so.
@@ -43,28 +41,24 @@ pub(super) fn open(file: File) -> Result<Archive, Fault> {
     Ok(archive)
 }
 
-impl Entries for Zip {
-    /// Decompresses a member, whose checksum must be right.
-    fn read(&self, member: &Member, most: u64) -> Result<Vec<u8>, Fault> {
-        let mut archive = self.0.clone();
-        let at = member.at as usize;
-        let entry = archive.by_index_data(at).map_err(damaged)?;
-        if entry.encrypted() {
-            let remedy = "unpack the archive with its password, or store it without one";
-            return Err(Fault::unsupported("this member is encrypted", remedy));
-        }
-        // The stated sizes may be wrong.
-        let limit = inflated_limit(entry.compressed_size()).min(most);
-        let entry = archive.by_index(at).map_err(damaged)?;
-        let mut bytes = Vec::new();
-        entry
-            .take(limit.saturating_add(1))
-            .read_to_end(&mut bytes)
-            .map_err(|error| Fault::syntax("compressed data", error.to_string()))?;
-        match bytes.len() as u64 > limit {
-            true => Err(Fault::DecompressionBomb { limit }),
-            false => Ok(bytes),
-        }
+/// Decompresses a member, whose checksum must be right.
+fn read(mut archive: ZipArchive<Window>, at: usize, most: u64) -> Result<Vec<u8>, Fault> {
+    let entry = archive.by_index_data(at).map_err(damaged)?;
+    if entry.encrypted() {
+        let remedy = "unpack the archive with its password, or store it without one";
+        return Err(Fault::unsupported("this member is encrypted", remedy));
+    }
+    // The stated sizes may be wrong.
+    let limit = inflated_limit(entry.compressed_size()).min(most);
+    let entry = archive.by_index(at).map_err(damaged)?;
+    let mut bytes = Vec::new();
+    entry
+        .take(limit.saturating_add(1))
+        .read_to_end(&mut bytes)
+        .map_err(|error| Fault::syntax("compressed data", error.to_string()))?;
+    match bytes.len() as u64 > limit {
+        true => Err(Fault::DecompressionBomb { limit }),
+        false => Ok(bytes),
     }
 }
 
