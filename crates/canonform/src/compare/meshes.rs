@@ -9,7 +9,7 @@ use relations::{MeshGeometry, Relation};
 use rigid::Handedness;
 use serde::Serialize;
 
-use super::comparison::{Comparison, FaceAgreement, Overlay, Residual};
+use super::comparison::{Comparison, FaceAgreement, Overlay};
 use crate::error::Error;
 use crate::form::{DescribeOptions, FormOptions, MeasuredSurface};
 
@@ -105,9 +105,6 @@ pub struct MeshComparison {
     /// The two forms laid over each other.
     #[serde(skip)]
     pub overlay: Overlay,
-    /// Distances from the points of either form to the other, in brief.
-    #[serde(skip)]
-    pub residual: [Residual; 2],
 }
 
 /// Compares two meshes: how they are related, how far apart their shapes are, and where they differ. The relation does not
@@ -153,13 +150,11 @@ pub fn compare_meshes([a, b]: [Compared<'_>; 2]) -> Result<MeshComparison, Error
         (Some(a), Some(b)) => relation.by_meshes([a, b]),
         _ => relation,
     };
-    let overlay = Overlay::new(&pair, [a.form, b.form])?;
     Ok(MeshComparison {
         relation,
         comparison: Comparison::new(&pair, distance)?,
         triangulation,
-        residual: overlay.residual(),
-        overlay,
+        overlay: Overlay::new(&pair, [a.form, b.form])?,
     })
 }
 

@@ -48,7 +48,7 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     let kind = found.relation.kind;
     let is_alike = |kinds: &[RelationKind]| kind.is_one_surface() || kinds.contains(&kind);
     let not_alike = args.exit_code.is_some_and(|kinds| !is_alike(kinds));
-    let (residual, form) = (found.residual[0], &found.comparison);
+    let (residual, form) = (found.overlay.residual()[0], &found.comparison);
     let max_vertex = a.surface().input_vertex(residual.max_point.into()).0;
     let relation = &found.relation;
     let (shape, [_, class]) = (ShapeMetric::SAME_SHAPE.at, ShapeMetric::SAME_CLASS.gap());
@@ -106,7 +106,7 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
 /// Everything else that was measured.
 fn detailed(found: &MeshComparison, vertex: u32) -> Vec<Fact> {
     let (c, relation) = (&found.comparison, &found.relation);
-    let Residual { median, max, .. } = found.residual[0];
+    let Residual { median, max, .. } = found.overlay.residual()[0];
     let handedness = match relation.evidence.handedness {
         Handedness::Same => "no",
         Handedness::Mirrored => "yes",

@@ -127,7 +127,7 @@ fn answer(
     };
     let meshes = laid.as_ref().map(in_space);
     let gap = laid.map(|laid| Residual::new(&laid.gaps.concat()));
-    let residual = found.residual;
+    let residual = found.overlay.residual();
     Ok(object! {
         a: name,
         b: params.b,
