@@ -109,6 +109,13 @@ pub enum IndexError {
     },
 }
 
+/// Of an index that cannot be read while it is written elsewhere.
+impl From<IndexError> for io::Error {
+    fn from(fault: IndexError) -> Self {
+        Self::other(fault)
+    }
+}
+
 impl IndexError {
     /// Turns an error of the operating system into one that names the file.
     pub(crate) fn io(action: &'static str, path: &Path) -> impl Fn(io::Error) -> Self + Copy {

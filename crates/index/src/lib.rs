@@ -56,7 +56,7 @@ mod tests;
 pub use base::ContentHash;
 pub use database::{damaged_path, log_path};
 pub use error::{FORMAT_VERSION, IndexError};
-pub use export::{ExportError, ExportFormat, csv_field, text_cell};
+pub use export::{ExportFormat, csv_field, text_cell};
 pub use reader::Index;
 pub use search::class_threshold;
 pub use shape::{Entry, Facts, Shape};

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use base::files::fill_atomically;
-use index::{ExportError, ExportFormat, Index};
+use base::files::{FileError, fill_atomically};
+use index::{ExportFormat, Index, IndexError};
 
 use crate::error::Error;
 
@@ -12,15 +12,9 @@ use crate::error::Error;
 /// # Errors
 /// [`Error::Index`] if the index cannot be read, [`Error::File`].
 pub fn export_index(index: &Index, format: ExportFormat, path: &Path) -> Result<(), Error> {
-    let mut unreadable = None;
-    let written = fill_atomically(path, |file| match index.export_as(format, file) {
-        Ok(()) => Ok(()),
-        Err(ExportError::Write(fault)) => Err(fault),
-        Err(ExportError::Index(fault)) => {
-            unreadable = Some(fault);
-            Err(std::io::Error::other("the index cannot be read"))
-        }
-    });
-    unreadable.map_or(Ok(()), Err)?;
-    Ok(written?)
+    let written = fill_atomically(path, |file| index.export_as(format, file));
+    written.map_err(|FileError { source, action, path }| match source.downcast::<IndexError>() {
+        Ok(unreadable) => unreadable.into(),
+        Err(source) => FileError { source, action, path }.into(),
+    })
 }

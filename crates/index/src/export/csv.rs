@@ -1,22 +1,21 @@
 //! Comma-separated values: what fits into a spreadsheet.
 
 use std::borrow::Cow;
-use std::io::Write;
+use std::io::{self, Write};
 
 use super::columns::{Value, values};
-use super::error::ExportError;
 use crate::Index;
 
-pub(super) fn write(index: &Index, out: &mut dyn Write) -> Result<(), ExportError> {
+pub(super) fn write(index: &Index, out: &mut dyn Write) -> io::Result<()> {
     let mut is_begun = false;
     index.each(|shape| {
         let (names, cells): (Vec<_>, Vec<_>) = values(&shape).into_iter().flat_map(cells).unzip();
         if !std::mem::replace(&mut is_begun, true) {
             writeln!(out, "{}", names.join(","))?;
         }
-        Ok::<(), ExportError>(writeln!(out, "{}", cells.join(","))?)
+        writeln!(out, "{}", cells.join(","))
     })?;
-    if is_begun { Ok(()) } else { Ok(writeln!(out)?) }
+    if is_begun { Ok(()) } else { writeln!(out) }
 }
 
 /// The cells of a value, with the names of their columns.

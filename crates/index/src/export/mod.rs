@@ -2,7 +2,6 @@
 
 mod columns;
 mod csv;
-mod error;
 mod npz;
 mod parquet;
 #[cfg(test)]
@@ -17,7 +16,6 @@ use serde::Serialize;
 use crate::Index;
 
 pub use csv::{csv_field, text_cell};
-pub use error::ExportError;
 
 /// A file format for an index; [`Index::export_as`] writes it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,8 +62,8 @@ impl Index {
     /// Writes the index into a file. Rows are in ascending order of names, and equal indexes give equal bytes.
     ///
     /// # Errors
-    /// [`ExportError`].
-    pub fn export_as(&self, format: ExportFormat, file: &mut File) -> Result<(), ExportError> {
+    /// If the file cannot be written. An [`IndexError`](crate::IndexError) is within the error if the index cannot be read.
+    pub fn export_as(&self, format: ExportFormat, file: &mut File) -> io::Result<()> {
         let mut out = BufWriter::with_capacity(1 << 16, file);
         match format {
             ExportFormat::Parquet => parquet::write(self, out.get_mut())?,
@@ -73,7 +71,7 @@ impl Index {
             ExportFormat::Csv => csv::write(self, &mut out)?,
             ExportFormat::JsonLines => self.export(&mut out)?,
         }
-        Ok(out.flush()?)
+        out.flush()
     }
 
     /// Writes the index as lines of JSON: first a header, then one line per shape in ascending order of names. Numbers
@@ -82,11 +80,11 @@ impl Index {
     /// Equal indexes give equal bytes, whether they were built at once, after interruptions, or merged from parts.
     ///
     /// # Errors
-    /// [`ExportError`].
-    pub fn export(&self, out: &mut dyn Write) -> Result<(), ExportError> {
+    /// As of [`export_as`](Self::export_as).
+    pub fn export(&self, out: &mut dyn Write) -> io::Result<()> {
         let (options, shapes) = (&self.options, self.len());
         write_line(out, &object! { format: "canonform-index", version: 3, options, shapes })?;
-        self.each(|shape| write_line(out, &shape).map_err(ExportError::from))
+        self.each(|shape| write_line(out, &shape))
     }
 }
 

@@ -14,13 +14,12 @@ use parquet::schema::parser::parse_message_type;
 use parquet::schema::types::ColumnPath;
 
 use super::columns::{Column, Kind, Value, columns};
-use super::error::ExportError;
 use crate::{Index, Shape};
 
 /// Shapes that are written together.
 const GROUP: usize = 1024;
 
-pub(super) fn write(index: &Index, file: &mut File) -> Result<(), ExportError> {
+pub(super) fn write(index: &Index, file: &mut File) -> io::Result<()> {
     let columns = columns(index)?;
     let schema = parse_message_type(&schema(&columns)).map_err(failed)?.into();
     let options = KeyValue::new("canonform.options".to_owned(), index.options.clone());
@@ -38,7 +37,7 @@ pub(super) fn write(index: &Index, file: &mut File) -> Result<(), ExportError> {
             write_group(&mut writer, &columns, &rows)?;
             rows.clear();
         }
-        Ok::<(), ExportError>(())
+        Ok::<(), io::Error>(())
     })?;
     if !rows.is_empty() {
         write_group(&mut writer, &columns, &rows)?;
@@ -66,7 +65,7 @@ fn write_group(
     writer: &mut SerializedFileWriter<&mut File>,
     columns: &[Column],
     rows: &[Shape],
-) -> Result<(), ExportError> {
+) -> io::Result<()> {
     let mut group = writer.next_row_group().map_err(failed)?;
     for column in columns {
         let values = rows.iter().map(|shape| column.value(shape));
@@ -95,7 +94,7 @@ fn lists<'a>(
     group: &mut SerializedRowGroupWriter<'_, &mut File>,
     is_optional: bool,
     rows: impl Iterator<Item = Option<Value<'a>>>,
-) -> Result<(), ExportError> {
+) -> io::Result<()> {
     let (mut values, mut definitions, mut repetitions) = (Vec::new(), Vec::new(), Vec::new());
     let of_empty = i16::from(is_optional);
     for row in rows {
@@ -120,13 +119,13 @@ fn put<T: DataType>(
     values: &[T::T],
     definitions: Option<&[i16]>,
     repetitions: Option<&[i16]>,
-) -> Result<(), ExportError> {
+) -> io::Result<()> {
     let column = group.next_column().map_err(failed)?;
     let mut column = column.ok_or_else(|| io::Error::other("the table has no further column"))?;
     column.typed::<T>().write_batch(values, definitions, repetitions).map_err(failed)?;
     column.close().map_err(failed)
 }
 
-fn failed(error: ParquetError) -> ExportError {
-    ExportError::Write(io::Error::other(error))
+fn failed(error: ParquetError) -> io::Error {
+    io::Error::other(error)
 }
