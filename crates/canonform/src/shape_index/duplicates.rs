@@ -208,10 +208,8 @@ pub(super) fn has_one_name(path: &Path) -> bool {
 
 /// A content with its numbers, and the files that have it.
 struct Candidate {
-    /// Different files, those that are links to others left out.
-    files: Vec<Entry>,
-    /// The names of links to each of them.
-    links: Vec<Vec<String>>,
+    /// Different files, each with the names of links to it.
+    files: Vec<(Entry, Vec<String>)>,
     fused: Vec<f32>,
     /// Of its mesh, if that was read: it is near another shape, and unchanged.
     invariants: Option<SurfaceInvariants>,
@@ -258,7 +256,7 @@ pub fn find_duplicates(
     read_invariants(search, &mut candidates, &to_read, observer)?;
     let unread = to_read.into_iter().filter(|&i| candidates[i].invariants.is_none());
     let mut unread: Vec<String> =
-        unread.flat_map(|i| candidates[i].files.iter().map(|entry| entry.id.clone())).collect();
+        unread.flat_map(|i| candidates[i].files.iter().map(|(entry, _)| entry.id.clone())).collect();
     unread.sort();
     // Copies of copies need not be near themselves.
     let pairs = near.iter().flat_map(|cluster| pairs_of(cluster));
@@ -270,7 +268,7 @@ pub fn find_duplicates(
         .par_iter()
         .map(|cluster| {
             let read = |&number: &usize| ClusterShape::read(&candidates[number], &places);
-            groups(kept_first(cluster.par_iter().map(read).collect(), &places), &places, options, observer)
+            groups(cluster.par_iter().map(read).collect(), &places, options, observer)
         })
         .collect::<Result<Vec<_>, Error>>()?;
     let n_compared = found.iter().map(|(_, n_compared)| n_compared).sum();
@@ -291,20 +289,17 @@ fn candidates(search: &ShapeSearch) -> Result<Vec<Candidate>, Error> {
     for (i, entry) in entries.into_iter().enumerate() {
         let number = *of_content.entry(entry.content).or_insert(candidates.len());
         if number == candidates.len() {
-            let (files, links, fused) = (Vec::new(), Vec::new(), vectors.vector(i).to_vec());
-            candidates.push(Candidate { files, links, fused, invariants: None });
+            let fused = vectors.vector(i).to_vec();
+            candidates.push(Candidate { files: Vec::new(), fused, invariants: None });
         }
-        let Candidate { files, links, .. } = &mut candidates[number];
-        let file = FileId::of(&mesh_path(&search.index().path, &entry.path)).ok();
-        match file
-            .map(|file| *of_file.entry((number, file)).or_insert(files.len()))
-            .filter(|place| *place < files.len())
-        {
-            Some(place) => links[place].push(entry.id),
-            None => {
-                files.push(entry);
-                links.push(Vec::new());
-            }
+        let files = &mut candidates[number].files;
+        let place = match FileId::of(&mesh_path(&search.index().path, &entry.path)) {
+            Ok(file) => *of_file.entry((number, file)).or_insert(files.len()),
+            Err(_) => files.len(),
+        };
+        match files.get_mut(place) {
+            Some((_, links)) => links.push(entry.id),
+            None => files.push((entry, Vec::new())),
         }
     }
     Ok(candidates)
@@ -341,7 +336,7 @@ impl Candidate {
 
     /// The mesh of the first of its files that can be read.
     fn geometry(&self, search: &ShapeSearch) -> Option<MeshGeometry> {
-        self.files.iter().find_map(|entry| search.geometry(entry))
+        self.files.iter().find_map(|(entry, _)| search.geometry(entry))
     }
 
     /// Whether their meshes may be one.
@@ -426,49 +421,41 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// What the user wants to keep comes first, whatever its exactness.
-    fn wanted(&self, file: &DuplicateFile) -> [i64; 3] {
+    /// Files in the order of these are kept: as far as the user [says](WANTED), and where neither is more exact. Triangles of STL
+    /// have no vertices in common, and coordinates of 32 bits.
+    fn order(&self, file: &DuplicateFile) -> Order {
         let place = absolute(&file.path).unwrap_or_else(|_| file.path.clone());
         let is_elsewhere = self.folder.as_ref().is_some_and(|folder| !place.starts_with(folder));
-        let [vertices, bytes] =
-            [file.vertices.unwrap_or_default() as i64, file.bytes.unwrap_or_default() as i64];
-        let age = file.modified.map_or(i64::MAX, |seconds| seconds as i64);
-        let [first, second] = match self.keep {
-            Keep::Exact | Keep::In(_) => [0, 0],
-            Keep::Largest => [-vertices, -bytes],
-            Keep::Smallest => [vertices, bytes],
-            Keep::Oldest => [age, 0],
-            Keep::Newest => [-age, 0],
-        };
-        [i64::from(is_elsewhere), first, second]
-    }
-
-    /// Files in the order of these are kept, as far as nothing else decides; [`ORDER`] says what they are.
-    fn order(&self, file: &DuplicateFile) -> ([u64; 6], String) {
-        let place = absolute(&file.path).unwrap_or_else(|_| file.path.clone());
         let folder = self.folders.iter().position(|folder| place.starts_with(folder));
-        let about = [
-            u64::from(!file.reference),
-            u64::from(file.is_linked),
-            u64::from(mesh_io::extension(&file.path) == "stl"),
-            folder.unwrap_or(self.folders.len()) as u64,
-            file.modified.unwrap_or_default(),
-            file.path.as_os_str().len() as u64,
-        ];
-        (about, file.id.clone())
+        let vertices = file.vertices.unwrap_or_default() as i64;
+        let bytes = file.bytes.unwrap_or_default() as i64;
+        let age = file.modified.map_or(i64::MAX, |seconds| seconds as i64);
+        let (first, second, why) = match self.keep {
+            Keep::Exact | Keep::In(_) => (0, 0, ""),
+            Keep::Largest => (-vertices, -bytes, "it is the largest"),
+            Keep::Smallest => (vertices, bytes, "it is the smallest"),
+            Keep::Oldest => (age, 0, "it is the oldest"),
+            Keep::Newest => (-age, 0, "it is the newest"),
+        };
+        [
+            (i64::from(is_elsewhere), "it is in the folder to keep"),
+            (first, why),
+            (second, why),
+            (i64::from(!file.reference), "it is in a reference folder"),
+            (i64::from(file.is_linked), "it is neither a link nor in an archive"),
+            (i64::from(mesh_io::extension(&file.path) == "stl"), "its format keeps what triangles share"),
+            (folder.unwrap_or(self.folders.len()) as i64, "its folder comes first"),
+            (file.modified.unwrap_or_default() as i64, "it is the oldest"),
+            (file.path.as_os_str().len() as i64, "it has the shortest path"),
+        ]
     }
 }
 
-/// Why the first file is kept in the [order](Places::order) of two. Triangles of STL have no vertices in common, and coordinates of 32
-/// bits.
-const ORDER: [&str; 6] = [
-    "it is in a reference folder",
-    "it is neither a link nor in an archive",
-    "its format keeps what triangles share",
-    "its folder comes first",
-    "it is the oldest",
-    "it has the shortest path",
-];
+/// Numbers in descending order of weight, and why the file with the least one is kept.
+type Order = [(i64, &'static str); 9];
+
+/// So many of them go before exactness.
+const WANTED: usize = 3;
 
 /// A content that may be that of others, with its mesh.
 struct ClusterShape<'a> {
@@ -476,23 +463,24 @@ struct ClusterShape<'a> {
     geometry: Option<MeshGeometry>,
     /// The first to keep first.
     files: Vec<DuplicateFile>,
-    wanted: [i64; 3],
+    /// Of the first file.
+    order: Order,
 }
 
 impl<'a> ClusterShape<'a> {
     fn read(candidate: &'a Candidate, places: &Places<'_>) -> Self {
         let geometry = candidate.geometry(places.search);
-        let file = |(entry, links): (&Entry, &Vec<String>)| places.file(entry, links, geometry.as_ref());
-        let mut files: Vec<DuplicateFile> = candidate.files.iter().zip(&candidate.links).map(file).collect();
-        files.sort_by_cached_key(|file| (places.wanted(file), places.order(file)));
-        let wanted = places.wanted(&files[0]);
-        Self { candidate, geometry, files, wanted }
+        let file = |(entry, links): &(Entry, Vec<String>)| places.file(entry, links, geometry.as_ref());
+        let mut files: Vec<DuplicateFile> = candidate.files.iter().map(file).collect();
+        files.sort_by_cached_key(|file| (places.order(file), file.id.clone()));
+        let order = places.order(&files[0]);
+        Self { candidate, geometry, files, order }
     }
 
     /// Both meshes, if neither shape is wanted more.
     fn meshes<'b>(&'b self, other: &'b Self) -> Option<[&'b MeshGeometry; 2]> {
         let meshes = [self.geometry.as_ref()?, other.geometry.as_ref()?];
-        (self.wanted == other.wanted).then_some(meshes)
+        (self.order[..WANTED] == other.order[..WANTED]).then_some(meshes)
     }
 
     /// Whether it is rather kept than another one, by their meshes alone.
@@ -504,7 +492,7 @@ impl<'a> ClusterShape<'a> {
     fn copies(&self) -> impl Iterator<Item = DuplicateMember> {
         let of = &self.files[0].id;
         self.files[1..].iter().map(move |file| {
-            let (same, content) = (ShapeDistance::default(), Some(self.candidate.files[0].content));
+            let (same, content) = (ShapeDistance::default(), Some(self.candidate.files[0].0.content));
             let relation = Relation::by_distance(same, 1.0, Handedness::Unknown).named(of, &file.id);
             let relation = relation.by_files([content, content]);
             DuplicateMember { file: file.clone(), of: of.clone(), relation }
@@ -539,16 +527,10 @@ impl<'a> Proved<'a> {
     }
 }
 
-/// Shapes in the order in which they are kept where none is more exact.
-fn kept_first<'a>(mut shapes: Vec<ClusterShape<'a>>, places: &Places<'_>) -> Vec<ClusterShape<'a>> {
-    shapes.sort_by_cached_key(|shape| (shape.wanted, places.order(&shape.files[0])));
-    shapes
-}
-
 /// Takes the shape to keep of those that are left, and what is proved to be the same, until none is left. Returns the number of
 /// meshes that were compared, too.
 fn groups(
-    shapes: Vec<ClusterShape<'_>>,
+    mut shapes: Vec<ClusterShape<'_>>,
     places: &Places<'_>,
     options: &DuplicateOptions,
     observer: &dyn Observer,
@@ -556,6 +538,7 @@ fn groups(
     let budget = observer.budget();
     let by = if options.asks_surfaces_only() { Relation::by_surfaces } else { Relation::by_meshes };
     let (mut groups, mut n_compared) = (Vec::new(), 0);
+    shapes.sort_by(|a, b| a.order.cmp(&b.order).then_with(|| a.files[0].id.cmp(&b.files[0].id)));
     let mut left: Vec<&ClusterShape<'_>> = shapes.iter().collect();
     // Shapes to which another one of their group is preferred.
     let mut rough: Vec<&ClusterShape<'_>> = Vec::new();
@@ -570,8 +553,7 @@ fn groups(
         let others: Vec<_> = left.iter().copied().filter(|shape| !std::ptr::eq(*shape, keeper)).collect();
         let relate = |other: &&ClusterShape<'_>| {
             budget.check()?;
-            let may_be = keeper.candidate.may_be(other.candidate, options);
-            Ok(if may_be { related(keeper, other, by) } else { None })
+            Ok(related(keeper, other, by, options))
         };
         let relations = others.par_iter().map(relate).collect::<Result<Vec<_>, Error>>()?;
         n_compared += relations.iter().flatten().count();
@@ -602,8 +584,7 @@ fn groups(
             }
             let is_nearer = |shape: &&ClusterShape<'_>| {
                 budget.check()?;
-                let may_be = shape.candidate.may_be(other.candidate, options);
-                let found = if may_be { related(shape, other, Relation::by_surfaces) } else { None };
+                let found = related(shape, other, Relation::by_surfaces, options);
                 let found = found.filter(|found| found.kind.is_one_surface() && is_one(found));
                 Ok(found.is_some_and(|found| gap(&found) < gap(told)))
             };
@@ -643,8 +624,8 @@ fn group(
             !relation.kind.is_one_geometry() && shape.files[0].vertices == other.files[0].vertices
         };
         left.retain(|Proved { shape: other, .. }| {
-            let found = may_have(other).then(|| related(shape, other, Relation::by_vertices)).flatten();
-            let found = found.filter(|told| told.kind.is_one_geometry());
+            let related = || related(shape, other, Relation::by_vertices, options);
+            let found = may_have(other).then(related).flatten().filter(|told| told.kind.is_one_geometry());
             members.extend(found.iter().flat_map(|told| other.members(&shape.files[0].id, told)));
             found.is_none()
         });
@@ -654,44 +635,43 @@ fn group(
     (!members.is_empty()).then_some(DuplicateGroup { keeper, why, members })
 }
 
-/// How a shape is related to a keeper, told by their meshes; `None` if one cannot be read.
+/// How a shape is related to a keeper, told by their meshes; `None` if one cannot be read, or both cannot be one.
 fn related(
     keeper: &ClusterShape<'_>,
     other: &ClusterShape<'_>,
     by: fn(Relation, [&MeshGeometry; 2]) -> Relation,
+    options: &DuplicateOptions,
 ) -> Option<Relation> {
-    let contents = [keeper, other].map(|shape| Some(shape.candidate.files[0].content));
+    let meshes = [keeper.geometry.as_ref()?, other.geometry.as_ref()?];
+    if !keeper.candidate.may_be(other.candidate, options) {
+        return None;
+    }
+    let contents = [keeper, other].map(|shape| Some(shape.candidate.files[0].0.content));
     let fused = keeper.candidate.distance(other.candidate);
     let distance = ShapeDistance { fused, combined: fused };
     let by_distance = Relation::by_distance(distance, 1.0, Handedness::Unknown)
         .named(&keeper.files[0].id, &other.files[0].id)
         .by_files(contents);
-    Some(by(by_distance, [keeper.geometry.as_ref()?, other.geometry.as_ref()?]))
+    Some(by(by_distance, meshes))
 }
 
-/// Why a shape is kept: its merits, and without any what comes first.
+/// Why a shape is kept: what the user wants, its merits, and without any what comes first.
 fn why(keeper: &ClusterShape<'_>, same: &[Proved<'_>], places: &Places<'_>) -> String {
-    let file = &keeper.files[0];
-    let against_file = |other: &DuplicateFile| match places.keep {
-        Keep::In(_) if places.wanted(file) != places.wanted(other) => "it is in the folder to keep",
-        Keep::Largest => "it is the largest",
-        Keep::Smallest => "it is the smallest",
-        Keep::Oldest => "it is the oldest",
-        Keep::Newest => "it is the newest",
-        Keep::Exact | Keep::In(_) => {
-            let [own, others] = [file, other].map(|file| places.order(file).0);
-            let first = own.iter().zip(others).position(|(own, other)| *own != other);
-            first.map_or("its name comes first", |first| ORDER[first])
-        }
+    // Which number decides, and its words.
+    let decides = |other: &Order| {
+        let first = keeper.order.iter().zip(other).position(|(own, other)| own.0 != other.0);
+        first.map_or((other.len(), "its name comes first"), |first| (first, keeper.order[first].1))
     };
+    let copies = keeper.files[1..].iter().map(|file| decides(&places.order(file)));
+    let order: Vec<_> = same.iter().map(|other| decides(&other.shape.order)).chain(copies).collect();
     let merit = |other: &Proved<'_>| match other.exact {
         Some((Side::First, merit)) => Some(merit.words()),
         _ => None,
     };
-    let mut reasons: Vec<&str> = same.iter().filter_map(merit).collect();
+    let wanted = order.iter().filter(|(first, _)| *first < WANTED).map(|(_, words)| *words);
+    let mut reasons: Vec<&str> = wanted.chain(same.iter().filter_map(merit)).collect();
     if reasons.is_empty() {
-        let others = same.iter().map(|other| &other.shape.files[0]).chain(&keeper.files[1..]);
-        reasons = others.map(against_file).collect();
+        reasons = order.iter().map(|(_, words)| *words).collect();
     }
     let mut seen = HashSet::new();
     reasons.retain(|reason| seen.insert(*reason));

@@ -38,7 +38,7 @@ const FILE_ROUNDING: f64 = 3.0 * ROUNDING;
 const FINER: usize = 3;
 
 /// Why one copy of a surface is more exact than another.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Merit {
     /// It has less noise, and no edges that new triangles reach over.
     Smooth,
