@@ -129,8 +129,9 @@ impl Listing {
     /// The meshes of a folder; files that differ only in their extensions have them in their names.
     pub(super) fn from_folder(root: &Root<'_>, labels: Option<&LabelSource>) -> Result<Self, Error> {
         let Dataset { shapes, labelled_by, skipped } = Dataset::read(root.given, labels)?;
-        let stored = shapes.iter().map(|shape| root.text(&shape.path)).collect();
-        let listing = Self::new(shapes, (stored, &[]), skipped, labels, |_| false)?;
+        let listed =
+            shapes.into_iter().map(|file| Listed { stored: root.text(&file.path), file, is_single: false });
+        let listing = Self::new(listed, skipped, labels, |_| false)?;
         let is_unlabelled = |listed: &Listed| listed.file.label.is_empty();
         if let (Some(file), [first, ..]) = (labels.and_then(LabelSource::file), &listing.shapes[..])
             && listing.shapes.iter().all(is_unlabelled)
@@ -157,23 +158,20 @@ impl Listing {
     }
 
     fn new(
-        mut shapes: Vec<ShapeFile>,
-        (stored, single): (Vec<String>, &[usize]),
+        listed: impl IntoIterator<Item = Listed>,
         skipped: Vec<Skipped>,
         labels: Option<&LabelSource>,
         is_class: impl Fn(&str) -> bool,
     ) -> Result<Self, Error> {
+        let places = listed.into_iter().map(|Listed { file, stored, is_single }| (file, (stored, is_single)));
+        let (mut shapes, places): (Vec<ShapeFile>, Vec<_>) = places.unzip();
         let single_class = labels.is_none().then(|| drop_single_class(&mut shapes, is_class)).flatten();
         let file = labels.and_then(LabelSource::file);
         let unused_labels = file.map(|file| file.unused(&shapes)).transpose()?.unwrap_or_default();
         name_apart(&mut shapes);
-        let mut listed: Vec<Listed> = shapes
-            .into_iter()
-            .zip(stored)
-            .map(|(file, stored)| Listed { file, stored, is_single: false })
-            .collect();
-        single.iter().for_each(|&place| listed[place].is_single = true);
-        Ok(Self { shapes: listed, skipped, single_class, labelled_by: None, unused_labels })
+        let shapes = shapes.into_iter().zip(places);
+        let shapes = shapes.map(|(file, (stored, is_single))| Listed { file, stored, is_single }).collect();
+        Ok(Self { shapes, skipped, single_class, labelled_by: None, unused_labels })
     }
 }
 
@@ -181,65 +179,57 @@ impl Inputs<'_> {
     /// The meshes; files that differ only in their extensions have them in their names. `is_class` tells classes of the
     /// index.
     pub(super) fn list(&self, home: &Home, is_class: impl Fn(&str) -> bool) -> Result<Listing, Error> {
-        let (mut shapes, mut stored, mut skipped) = (Vec::new(), Vec::new(), Vec::new());
-        let (mut seen, mut places, mut single) = (HashSet::new(), HashSet::new(), Vec::new());
-        // A link leads to a file that is there anyway; hard links are files of their own. What cannot be found is reported when it
-        // is read.
-        let mut is_repeated = |path: &Path, stored: &String| {
+        let (mut listed, mut skipped) = (Vec::new(), Vec::new());
+        for path in self.paths {
+            let stem = without_extension(path);
+            if is_dataset(path) {
+                let (root, dataset) = (Root::new(path, home)?, Dataset::read(path, self.labels)?);
+                let place =
+                    |file: ShapeFile| Listed { stored: root.text(&file.path), file, is_single: false };
+                listed.extend(dataset.shapes.into_iter().map(place));
+                skipped.extend(dataset.skipped);
+            } else if let Some(name) = stem.file_name().and_then(|name| name.to_str()) {
+                let file = ShapeFile { label: String::new(), name: name.to_owned(), path: path.clone() };
+                listed.push(Listed { file, stored: home.file_text(path), is_single: true });
+            } else {
+                skipped.push(Skipped { path: path.clone(), kind: SkipKind::NotUtf8 });
+            }
+        }
+        let (mut seen, mut places) = (HashSet::new(), HashSet::new());
+        listed.retain(|Listed { file: ShapeFile { path, .. }, stored, .. }| {
+            // A link leads to a file that is there anyway; hard links are files of their own. What cannot be found is reported when
+            // it is read.
             let is_link = path.symlink_metadata().is_ok_and(|about| about.is_symlink());
             let is_known = FileId::of(path).is_ok_and(|id| !seen.insert(id));
-            !places.insert(stored.clone()) || is_link && is_known
-        };
-        let mut skip = |path: &Path, kind| skipped.push(Skipped { path: path.to_owned(), kind });
-        for path in self.paths {
-            if is_dataset(path) {
-                let root = Root::new(path, home)?;
-                let dataset = Dataset::read(path, self.labels)?;
-                dataset.skipped.into_iter().for_each(|it| skip(&it.path, it.kind));
-                for shape in dataset.shapes {
-                    let place = root.text(&shape.path);
-                    if is_repeated(&shape.path, &place) {
-                        skip(&shape.path, SkipKind::Repeated);
-                    } else {
-                        stored.push(place);
-                        shapes.push(shape);
-                    }
-                }
-                continue;
+            let is_repeated = !places.insert(stored.clone()) || is_link && is_known;
+            if is_repeated {
+                skipped.push(Skipped { path: path.clone(), kind: SkipKind::Repeated });
             }
-            let stem = without_extension(path);
-            let Some(name) = stem.file_name().and_then(|name| name.to_str()) else {
-                skip(path, SkipKind::NotUtf8);
-                continue;
-            };
-            let place = home.file_text(path);
-            if is_repeated(path, &place) {
-                skip(path, SkipKind::Repeated);
-                continue;
-            }
-            stored.push(place);
-            single.push(shapes.len());
-            shapes.push(ShapeFile { label: String::new(), name: name.to_owned(), path: path.clone() });
-        }
-        self.label_single(&mut shapes, &single, &is_class);
+            !is_repeated
+        });
+        self.label_single(&mut listed, &is_class);
         if let Some(label) = self.label {
-            shapes.iter_mut().for_each(|shape| shape.label = label.to_owned());
+            listed.iter_mut().for_each(|listed| listed.file.label = label.to_owned());
         }
         // A class that was asked for is one.
         let is_class = |label: &str| self.label == Some(label) || is_class(label);
-        Listing::new(shapes, (stored, &single), skipped, self.labels, is_class)
+        Listing::new(listed, skipped, self.labels, is_class)
     }
 
-    /// Labels the files at these places, which belong to no dataset, together.
-    fn label_single(&self, shapes: &mut [ShapeFile], places: &[usize], is_class: impl Fn(&str) -> bool) {
-        let mut single: Vec<ShapeFile> = places.iter().map(|place| shapes[*place].clone()).collect();
-        label_shapes(&mut single, self.labels);
-        for (place, mut shape) in places.iter().zip(single) {
-            let suggested = label_of(&shape.name);
-            if self.labels.is_none() && shape.label.is_empty() && is_class(&suggested) {
-                shape.label = suggested;
+    /// Labels the files that belong to no dataset, together.
+    fn label_single(&self, listed: &mut [Listed], is_class: impl Fn(&str) -> bool) {
+        let (mut files, places): (Vec<ShapeFile>, Vec<&mut ShapeFile>) = listed
+            .iter_mut()
+            .filter(|listed| listed.is_single)
+            .map(|Listed { file, .. }| (file.clone(), file))
+            .unzip();
+        label_shapes(&mut files, self.labels);
+        for (place, mut file) in places.into_iter().zip(files) {
+            let suggested = label_of(&file.name);
+            if self.labels.is_none() && file.label.is_empty() && is_class(&suggested) {
+                file.label = suggested;
             }
-            shapes[*place] = shape;
+            *place = file;
         }
     }
 }
