@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     let stored = start.elapsed().as_secs_f64();
-    writer.finish(&())?;
+    writer.finish()?;
     println!("stored in {stored:.2} s, finished in {:.2} s", start.elapsed().as_secs_f64() - stored);
     Ok(())
 }

@@ -54,7 +54,7 @@ fn add(queries: &Path, path: &Path, count: usize) -> Result<(), Box<dyn Error>> 
         let start = Instant::now();
         let mut writer = IndexWriter::open(path)?;
         writer.put(&[shape(format!("added{i:04}"), row)])?;
-        writer.finish(&())?;
+        writer.finish()?;
         seconds.push(start.elapsed().as_secs_f64());
         bytes.push(std::fs::metadata(path)?.len() as i64 - before as i64);
     }
@@ -75,7 +75,7 @@ fn build(base: &Path, path: &Path) -> Result<(), Box<dyn Error>> {
     let stored = start.elapsed().as_secs_f64();
     drop(shapes);
     drop(rows);
-    writer.finish(&())?;
+    writer.finish()?;
     let finished = start.elapsed().as_secs_f64() - stored;
     println!("{}", json!({ "stored": stored, "finished": finished, "megabytes": peak_memory() }));
     Ok(())

@@ -49,8 +49,6 @@ pub(crate) mod meta {
     pub(crate) const SHAPES: &str = "shapes";
     /// Whether a writer was interrupted, or is at work.
     pub(crate) const UNFINISHED: &str = "unfinished";
-    /// The distance beyond which a shape is of no class, as JSON.
-    pub(crate) const THRESHOLD: &str = "unknown_beyond";
     /// A number that grows with every transaction.
     pub(crate) const CHANGE: &str = "change";
     /// A random word for each writer whose changes may be in the log, that of the state before it first.

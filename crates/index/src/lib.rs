@@ -21,7 +21,7 @@
 //! };
 //! let mut writer = IndexWriter::build(&path, "how the vectors were made")?;
 //! writer.put(&[shape("cat0", "cat", [0.0, 0.1]), shape("dog0", "dog", [5.0, 0.2])])?;
-//! writer.finish(&())?;
+//! writer.finish()?;
 //!
 //! let index = Index::open(&path)?;
 //! assert_eq!((index.len(), index.entry("cat0")?.path.as_str()), (2, "cat0.off"));
@@ -34,10 +34,10 @@
 //! | module | contents |
 //! |---|---|
 //! | `shape` | the record of one shape |
-//! | `vectors` | all vectors in memory: the nearest, and the threshold of unknown classes. Knows no file |
+//! | `vectors` | all vectors in memory, and the nearest of them. Knows no file |
 //! | `database` | the schema, and how the file is opened |
 //! | `reader`, `writer` | [`Index`], [`IndexWriter`] |
-//! | `search` | [`Index::nearest`], [`class_threshold`] |
+//! | `search` | [`Index::nearest`] |
 //! | `verify`, `export` | [`verify`], [`Index::export`], [`Index::export_as`] |
 
 mod database;
@@ -58,7 +58,6 @@ pub use database::{damaged_path, log_path};
 pub use error::{FORMAT_VERSION, IndexError};
 pub use export::{ExportFormat, csv_field, text_cell};
 pub use reader::Index;
-pub use search::class_threshold;
 pub use shape::{Entry, Facts, Shape};
 pub use vectors::VectorTable;
 pub use verify::{Verification, verify};

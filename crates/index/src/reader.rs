@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use base::ContentHash;
-use retrieval::UnknownThreshold;
 
 use crate::database::{Database, EntryRow, log_path, meta, vector_row};
 use crate::{Entry, IndexError, Shape, VectorTable};
@@ -26,9 +25,6 @@ pub struct Index {
     pub change: u64,
     /// Whether its writer finished it. One that was interrupted, or is at work, has put some of the shapes only.
     pub is_finished: bool,
-    /// A query whose nearest shape is farther belongs to no class of the index; `None` if the classes are too small to
-    /// tell, or the index is not finished. From at most 512 of the shapes when the index was finished.
-    pub threshold: Option<UnknownThreshold>,
     /// Read with the first search.
     vectors: OnceLock<VectorTable>,
 }
@@ -47,12 +43,6 @@ impl Index {
             n_shapes: usize::try_from(database.count(meta::SHAPES)?).unwrap_or(usize::MAX),
             change: database.count(meta::CHANGE)?,
             is_finished: database.meta(meta::UNFINISHED)?.is_none(),
-            threshold: match database.meta(meta::THRESHOLD)? {
-                Some(text) => {
-                    serde_json::from_str(&text).map_err(|fault| database.damaged(fault.to_string()))?
-                }
-                None => None,
-            },
             path: path.to_owned(),
             database: Mutex::new(database),
             vectors: OnceLock::new(),
@@ -199,11 +189,6 @@ pub(crate) fn entries(database: &Database) -> Result<Vec<Entry>, IndexError> {
     Ok(rows(database, "ORDER BY id", [])?.into_iter().map(|row| row.entry).collect())
 }
 
-/// The classes of all shapes, in ascending order of names: entries in full take five times as long to read.
-pub(crate) fn classes(database: &Database) -> Result<Vec<String>, IndexError> {
-    database.all("SELECT label FROM shapes ORDER BY id", [], |row| row.get(0))
-}
-
 fn rows(
     database: &Database,
     which: &str,
@@ -216,7 +201,7 @@ fn rows(
 }
 
 /// The fused vectors of all shapes.
-pub(crate) fn vectors(database: &Database) -> Result<VectorTable, IndexError> {
+fn vectors(database: &Database) -> Result<VectorTable, IndexError> {
     let mut table = VectorTable::default();
     let sql = "SELECT id, 'fused', vector, checksum FROM fused ORDER BY id";
     each_vector(database, sql, [], |id, _, fused| {

@@ -1,5 +1,5 @@
 CREATE TABLE meta (            -- what holds for the whole index
-    name  TEXT PRIMARY KEY,    -- options, shapes, unfinished, unknown_beyond, change, writers, notes
+    name  TEXT PRIMARY KEY,    -- options, shapes, unfinished, change, writers, notes
     value TEXT NOT NULL
 ) STRICT, WITHOUT ROWID;
 CREATE TABLE shapes (

@@ -1,9 +1,5 @@
 //! Search for the nearest vectors.
 
-use retrieval::UnknownThreshold;
-
-use crate::reader::vectors;
-use crate::vectors::threshold;
 use crate::{Index, IndexError};
 
 impl Index {
@@ -27,21 +23,4 @@ impl Index {
             false => Err(IndexError::BadVector(name())),
         }
     }
-}
-
-/// The [threshold](Index::threshold) of the index that would hold the shapes of all of these, which have different names
-/// and were described with the same options. Holds the vectors of one index at a time in memory.
-///
-/// # Errors
-/// [`IndexError::Io`], [`IndexError::Damaged`].
-pub fn class_threshold(indexes: &[Index]) -> Result<Option<UnknownThreshold>, IndexError> {
-    threshold(|visit| {
-        indexes.iter().try_for_each(|index| {
-            let classes: Vec<String> = index.entries()?.into_iter().map(|entry| entry.label).collect();
-            let vectors = vectors(&index.database())?;
-            index.expect_all(vectors.len())?;
-            visit(&vectors, &classes);
-            Ok(())
-        })
-    })
 }

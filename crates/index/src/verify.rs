@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::{Index, IndexError, Shape, class_threshold};
+use crate::{Index, IndexError, Shape};
 
 /// The result of [`verify`].
 #[derive(Debug, Clone, PartialEq)]
@@ -18,7 +18,7 @@ pub struct Verification {
 /// Most defects of the structure that are named.
 const MAX_FAULTS: usize = 20;
 
-/// Checks the structure of the database, every value of every shape, and what follows from them.
+/// Checks the structure of the database, and every value of every shape.
 ///
 /// # Errors
 /// As [`Index::open`], if the file is not an index.
@@ -57,17 +57,6 @@ fn check(index: &Index, n_shapes: &mut usize) -> Result<Vec<String>, IndexError>
         let sql = format!("SELECT id FROM {table} WHERE id NOT IN (SELECT id FROM shapes) LIMIT 1");
         if let Some(id) = index.database().all(&sql, [], |row| row.get::<_, String>(0))?.pop() {
             return Err(index.damaged(format!("there are vectors of `{id}`, but no entry")));
-        }
-    }
-    if index.is_finished {
-        let fresh = class_threshold(std::slice::from_ref(index))?;
-        // Other processors round in another way.
-        let agree = match (index.threshold, fresh) {
-            (Some(a), Some(b)) => (a.distance - b.distance).abs() <= 1e-3 * b.distance,
-            (a, b) => a.is_none() && b.is_none(),
-        };
-        if !agree {
-            return Err(index.damaged("its threshold of unknown classes does not match its shapes"));
         }
     }
     Ok(Vec::new())

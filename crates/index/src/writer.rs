@@ -2,13 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use base::Observer;
 use rusqlite::params_from_iter;
 use rusqlite::types::Value;
 
 use crate::database::{Database, EntryRow, checksum, damaged_path, meta, to_bytes, with_suffix};
-use crate::reader::{DISC_AREAS, FORM, SIGNATURE, classes, entries, find, shape_of, vectors};
-use crate::vectors::threshold;
+use crate::reader::{DISC_AREAS, FORM, SIGNATURE, entries, find, shape_of};
 use crate::{Entry, Index, IndexError, Shape};
 
 /// The only writer of an index.
@@ -32,7 +30,7 @@ use crate::{Entry, Index, IndexError, Shape};
 ///
 /// let writer = IndexWriter::build(&path, "options")?;
 /// assert!(writer.is_resumed && writer.entry("cat0")?.is_some());
-/// assert_eq!(writer.finish(&())?.len(), 1);
+/// assert_eq!(writer.finish()?.len(), 1);
 /// # Ok::<(), canonform_index::IndexError>(())
 /// ```
 #[derive(Debug)]
@@ -265,38 +263,26 @@ impl IndexWriter {
     /// Puts all changes on disk. The index says that it is not finished.
     pub fn commit(&mut self) -> Result<(), IndexError> {
         self.database.set_meta(meta::UNFINISHED, Some("run the command again to finish it"))?;
-        self.commit_as(None)?;
+        self.commit_all()?;
         self.database.begin_writing()
     }
 
-    fn commit_as(&mut self, threshold: Option<&str>) -> Result<(), IndexError> {
+    fn commit_all(&mut self) -> Result<(), IndexError> {
         let change = self.database.count(meta::CHANGE)? + 1;
         self.database.set_meta(meta::CHANGE, Some(&change.to_string()))?;
         self.database.set_meta(meta::SHAPES, Some(&self.n_shapes.to_string()))?;
-        self.database.set_meta(meta::THRESHOLD, threshold)?;
         self.database.execute("COMMIT")?;
         self.unwritten.0 = None;
         Ok(())
     }
 
-    /// Finishes the index: puts all changes on disk with what follows from them.
+    /// Finishes the index: puts all changes on disk.
     ///
     /// # Errors
     /// [`IndexError::Io`]; then the index is as it was after the last [`commit`](Self::commit).
-    pub fn finish(mut self, observer: &dyn Observer) -> Result<Index, IndexError> {
-        observer.begin("finding the threshold of unknown classes", 0);
-        let vectors = vectors(&self.database)?;
-        let classes = classes(&self.database)?;
-        if classes.len() != vectors.len() || vectors.len() as u64 != self.n_shapes {
-            return Err(self.database.damaged("the number of its shapes is wrong"));
-        }
-        let threshold = threshold(|visit| {
-            visit(&vectors, &classes);
-            Ok::<_, IndexError>(())
-        })?;
-        let threshold = threshold.and_then(|threshold| serde_json::to_string(&threshold).ok());
+    pub fn finish(mut self) -> Result<Index, IndexError> {
         self.database.set_meta(meta::UNFINISHED, None)?;
-        self.commit_as(threshold.as_deref())?;
+        self.commit_all()?;
         let path = self.path().to_owned();
         drop(self);
         Index::open(&path)

@@ -8,7 +8,7 @@ use base::object;
 use canonform::collection::{LabelSource, ShapeFile, content_hash};
 use canonform::index::{Entry, ExportFormat, FORMAT_VERSION, IndexError};
 use canonform::library::{
-    BuildOptions, DuplicateOptions, EvaluateOptions, Inputs, Shard, add_to_index, build_index,
+    Agreement, BuildOptions, DuplicateOptions, EvaluateOptions, Inputs, Shard, add_to_index, build_index,
     evaluate_index, export_index, find_duplicates, indexed_shapes, mesh_path, remove_from_index,
     unchanged_index,
 };
@@ -47,7 +47,7 @@ enum Wanted<'py> {
 type ListedShape = (String, String, OsString, u64, u64);
 
 fn search_options(k: usize, rank: &str, explain: bool) -> PyResult<SearchOptions> {
-    Ok(SearchOptions { k, explain, rank_by: chosen("rank", rank)? })
+    Ok(SearchOptions { k, explain, rank_by: chosen("rank", rank)?, ..SearchOptions::default() })
 }
 
 /// Where classes come from: a word, or a label file.
@@ -170,18 +170,11 @@ impl Index {
         let mut answer = run(py, |observer| {
             // As on the command line, a file goes before a shape of the same name.
             let query = match (surface, search.id_of(&path)) {
-                (Some(surface), _) => search.of_bytes(query_of(
-                    surface,
-                    search.describe_options(),
-                    name,
-                    &options,
-                    observer,
-                )?)?,
+                (Some(surface), _) => query_of(surface, search.describe_options(), name, &options, observer)?,
                 (None, Some(id)) => search.query_of(id, &options, observer)?,
                 (None, None) => {
                     let mesh = canonform::collection::read_mesh(&path)?;
-                    let content = explain.then(|| content_hash(&path)).transpose()?;
-                    search.of_file(search.query(&mesh, (name, content), &options, observer)?, &path)
+                    search.query(&mesh, (name, Some(content_hash(&path)?)), &options, observer)?
                 }
             };
             search.search(&query, &options, observer)
@@ -208,7 +201,9 @@ impl Index {
         Ok(json(&run(py, |observer| self.search.query_of(id, &options, observer))?))
     }
 
-    /// The answer to a query of another process, among some shapes or all; both as JSON.
+    /// The answer to a query of another process, among some shapes or all, and with the classes of all indexes that are searched;
+    /// all as JSON.
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn search_among(
         &self,
         py: Python<'_>,
@@ -217,12 +212,12 @@ impl Index {
         k: usize,
         rank: &str,
         explain: bool,
+        classes: &str,
     ) -> PyResult<String> {
-        let (query, options): (Query, _) = (unpacked(query)?, search_options(k, rank, explain)?);
-        let mut answer = run(py, |observer| {
-            let query = self.search.of_bytes(query)?;
-            self.search.search_among(&query, ids.as_deref(), &options, observer)
-        })?;
+        let query: Query = unpacked(query)?;
+        let options = SearchOptions { classes: unpacked(classes)?, ..search_options(k, rank, explain)? };
+        let mut answer =
+            run(py, |observer| self.search.search_among(&query, ids.as_deref(), &options, observer))?;
         answer.place(|path| self.placed(path));
         Ok(json(&answer))
     }
@@ -413,31 +408,18 @@ pub(crate) fn shortlist(k: usize) -> [usize; 2] {
     [canonform::search::n_candidates(k), canonform::search::n_results(k)]
 }
 
-/// The answer to a query in shards, from what they answer and the threshold of unknown classes; all as JSON.
+/// The answer to a query in shards, from what they answer and the classes of all; all as JSON.
 #[pyfunction]
-pub(crate) fn merge_answers(
-    query: &str,
-    answers: Vec<String>,
-    threshold: &str,
-    k: usize,
-) -> PyResult<String> {
-    let (query, threshold): (Query, _) = (unpacked(query)?, unpacked(threshold)?);
+pub(crate) fn merge_answers(query: &str, answers: Vec<String>, classes: &str, k: usize) -> PyResult<String> {
+    let (query, classes): (Query, _) = (unpacked(query)?, unpacked(classes)?);
     let answers = answers.iter().map(|answer| unpacked(answer)).collect::<PyResult<Vec<Answer>>>()?;
-    Ok(json(&canonform::search::merge_answers(&query, answers, threshold, k)))
+    Ok(json(&canonform::search::merge_answers(&query, answers, classes, k)))
 }
 
-/// The fused distance beyond which a shape is of no class of these indexes, as JSON.
+/// How well the classes of these indexes and the distances of their shapes agree, as JSON.
 #[pyfunction]
-pub(crate) fn class_threshold(py: Python<'_>, paths: Vec<PathBuf>) -> PyResult<String> {
-    let threshold = run(py, |_| {
-        let indexes = paths.iter().map(|path| canonform::index::Index::open(path));
-        let indexes = indexes.collect::<Result<Vec<_>, _>>()?;
-        for index in &indexes {
-            index.expect_options(&indexes[0].options)?;
-        }
-        Ok(canonform::index::class_threshold(&indexes)?)
-    })?;
-    Ok(json(&threshold))
+pub(crate) fn agreement(py: Python<'_>, paths: Vec<PathBuf>) -> PyResult<String> {
+    Ok(json(&run(py, |observer| Agreement::of_indexes(&paths, observer))?))
 }
 
 /// Scores a square matrix of distances by the classes of its rows; returns the scores as JSON. Both directions are averaged.

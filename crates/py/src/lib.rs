@@ -41,7 +41,7 @@ mod _canonform {
     use crate::form::Form;
     #[pymodule_export]
     use crate::index::{
-        Index, class_threshold, content_hashes, evaluate_matrix, list_folder, merge_answers, merge_indexes,
+        Index, agreement, content_hashes, evaluate_matrix, list_folder, merge_answers, merge_indexes,
         query_components, query_of_surface, shortlist,
     };
     #[pymodule_export]

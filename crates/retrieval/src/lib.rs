@@ -39,4 +39,4 @@ pub use labels::Labels;
 pub use ranking::{Neighbor, Rankings, rank, rank_row};
 pub use refinement::{Refinement, refine_nearest};
 pub use scores::{QueryScores, Scores, precision_recall};
-pub use vote::{Tally, UnknownThreshold, Vote, vote};
+pub use vote::{Tally, Vote, vote};

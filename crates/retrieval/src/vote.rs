@@ -1,55 +1,6 @@
-//! Classification by votes of neighbors, with a threshold for unknown classes.
-
-use serde::{Deserialize, Serialize};
+//! Classification by votes of neighbors.
 
 use crate::Neighbor;
-
-/// The distance beyond which a shape is considered to belong to none of the known classes.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct UnknownThreshold {
-    /// A shape whose nearest neighbor is farther than this is unknown.
-    pub distance: f64,
-    /// Share of the labelled shapes that would be called unknown although their class is present.
-    pub missed: f64,
-    /// Share of the labelled shapes that would be assigned a class if their own were absent.
-    pub mistaken: f64,
-}
-
-impl UnknownThreshold {
-    /// The threshold that separates labelled shapes best: `own` holds distances from shapes to the nearest other
-    /// shape of their class, `foreign` distances to the nearest shape of any other class.
-    ///
-    /// Minimizes the sum of the two error rates; if a range of thresholds does, returns its middle. Without foreign
-    /// distances, returns twice the largest own distance. Returns `None` without own distances.
-    pub fn from_distances(own: &[f64], foreign: &[f64]) -> Option<Self> {
-        let sorted = |distances: &[f64]| {
-            let mut sorted: Vec<f64> = distances.iter().copied().filter(|d| d.is_finite()).collect();
-            sorted.sort_by(f64::total_cmp);
-            sorted
-        };
-        let (own, foreign) = (sorted(own), sorted(foreign));
-        let largest = *own.last()?;
-        if foreign.is_empty() {
-            return Some(Self { distance: 2.0 * largest, missed: 0.0, mistaken: 0.0 });
-        }
-        let missed = |t: f64| (own.len() - own.partition_point(|d| *d <= t)) as f64 / own.len() as f64;
-        let mistaken = |t: f64| foreign.partition_point(|d| *d <= t) as f64 / foreign.len() as f64;
-        let mut steps: Vec<f64> = own.iter().chain(&foreign).copied().collect();
-        steps.sort_by(f64::total_cmp);
-        steps.dedup();
-        // Error rates are constant between two steps.
-        let cost = |step: &f64| missed(*step) + mistaken(*step);
-        let (mut best, mut least) = (0, f64::INFINITY);
-        for (i, step) in steps.iter().enumerate() {
-            if cost(step) < least {
-                (best, least) = (i, cost(step));
-            }
-        }
-        let end = steps.get(best + 1).map_or(2.0 * steps[best], |next| *next);
-        let distance = 0.5 * (steps[best] + end);
-        Some(Self { distance, missed: missed(distance), mistaken: mistaken(distance) })
-    }
-}
 
 /// The outcome of a vote on the class of a shape.
 #[derive(Debug, Clone, PartialEq)]

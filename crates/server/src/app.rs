@@ -6,6 +6,7 @@ use std::sync::Arc;
 use axum::body::Bytes;
 use axum::http::StatusCode;
 use base::Cache;
+use canonform::embed::describe_part;
 use canonform::search::{Answer, SearchOptions, SearchRank};
 use canonform::{Budget, ContentHash, Error};
 
@@ -55,10 +56,9 @@ impl Query {
         budget: &Budget,
     ) -> Result<Answer, Error> {
         let search = &collection.search;
-        // The same file in the index is not a neighbor of its own.
-        let mut query = search.of_bytes(self.described.clone())?;
+        let mut query = self.described.clone();
         if options.rank_by == SearchRank::Part {
-            query = query.as_part(&self.measured.surface, search.describe_options(), budget)?;
+            query.part = Some(describe_part(&self.measured.surface, search.describe_options(), budget)?);
         }
         search.search(&query, options, budget)
     }

@@ -64,7 +64,7 @@ mod tests {
             (Forms, false, 10, 100_000, 3000, true),
             (Plain, true, 24, 100_000, 30_000, true),
         ] {
-            let options = SearchOptions { rank_by, explain, k };
+            let options = SearchOptions { rank_by, explain, k, ..SearchOptions::default() };
             let cost = of_search(&options, n_shapes, 3000, vertices);
             assert_eq!(is_long(cost), expected, "{options:?}, {n_shapes} shapes, {vertices} vertices");
         }

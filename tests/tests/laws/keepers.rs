@@ -71,7 +71,7 @@ fn duplicates(files: Vec<(usize, String)>, folder: &Path) -> DuplicateReport {
     };
     let mut writer = IndexWriter::build(&path, &DescribeOptions::default().text()).unwrap();
     writer.put(&files.into_iter().map(shape).collect::<Vec<_>>()).unwrap();
-    writer.finish(&()).unwrap();
+    writer.finish().unwrap();
     find_duplicates(&ShapeSearch::open(&path).unwrap(), &DuplicateOptions::default(), &()).unwrap()
 }
 

@@ -1,6 +1,7 @@
 //! How well the classes of an index and the distances of its shapes agree.
 
 use std::collections::{BTreeSet, HashMap};
+use std::path::PathBuf;
 
 use base::{ContentHash, Observer};
 use descriptors::{Boundary, PreparedShape, Sample, ShapeMetric, ShapePair};
@@ -8,6 +9,7 @@ use index::{Entry, Index, IndexError, IndexWriter, Shape};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use super::record::options_of;
 use crate::error::Error;
 use crate::form::DescribeOptions;
 
@@ -41,16 +43,32 @@ pub struct Agreement {
 }
 
 impl Agreement {
+    /// Of the index that would hold the shapes of all of these, which have different names; `None` if too few pairs have a class.
+    ///
+    /// # Errors
+    /// [`Error::Index`], also for indexes whose shapes were described with different options.
+    pub fn of_indexes(paths: &[PathBuf], observer: &dyn Observer) -> Result<Option<Self>, Error> {
+        let indexes = paths.iter().map(|path| Index::open(path)).collect::<Result<Vec<_>, _>>()?;
+        let Some(first) = indexes.first() else { return Ok(None) };
+        let (mut shapes, mut of) = (Vec::new(), HashMap::new());
+        for index in &indexes {
+            index.expect_options(&first.options)?;
+            for shape in drawn(index.entries()?) {
+                of.insert(shape.id.clone(), index);
+                shapes.push(shape);
+            }
+        }
+        Self::of(shapes, &options_of(first)?, |id| of[id].shape(id), observer)
+    }
+
     /// Of shapes, those without a class left out; `None` if too few pairs have one.
     pub(super) fn of(
-        mut shapes: Vec<Entry>,
+        shapes: Vec<Entry>,
         options: &DescribeOptions,
         shape: impl Fn(&str) -> Result<Shape, IndexError>,
         observer: &dyn Observer,
     ) -> Result<Option<Self>, Error> {
-        shapes.retain(|shape| !shape.label.is_empty());
-        shapes.sort_by_cached_key(|shape| ContentHash::of(&[&shape.id]).start());
-        shapes.truncate(SHAPES);
+        let shapes = drawn(shapes);
         let pairs = (0..shapes.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
         let (same, others): (Vec<_>, Vec<_>) = pairs
             .filter(|&(i, j)| shapes[i].content != shapes[j].content)
@@ -58,11 +76,11 @@ impl Agreement {
         if same.len() < LEAST || others.is_empty() {
             return Ok(None);
         }
-        let drawn = |pairs: &[(usize, usize)]| -> Vec<(usize, usize)> {
+        let some = |pairs: &[(usize, usize)]| -> Vec<(usize, usize)> {
             let n = pairs.len().min(MOST);
             (0..n).map(|i| pairs[i * pairs.len() / n]).collect()
         };
-        let (same, others) = (drawn(&same), drawn(&others));
+        let (same, others) = (some(&same), some(&others));
         let needed: BTreeSet<usize> = same.iter().chain(&others).flat_map(|&(i, j)| [i, j]).collect();
         let prepared = needed.into_iter().map(|i| Ok((i, options.prepare(&shape(&shapes[i].id)?)?)));
         let prepared = prepared.collect::<Result<HashMap<usize, PreparedShape>, Error>>()?;
@@ -105,6 +123,14 @@ impl Agreement {
     }
 }
 
+/// The shapes with a class whose pairs are compared.
+fn drawn(mut shapes: Vec<Entry>) -> Vec<Entry> {
+    shapes.retain(|shape| !shape.label.is_empty());
+    shapes.sort_by_cached_key(|shape| ContentHash::of(&[&shape.id]).start());
+    shapes.truncate(SHAPES);
+    shapes
+}
+
 /// The boundary of some pairs. One more pair of each kind is at the farthest and the nearest distance of the others, where it
 /// contradicts them (rule of succession), so that the fit is finite.
 fn boundary(samples: &[Sample]) -> Boundary {
@@ -130,5 +156,5 @@ pub(super) fn finish(
     let found = Agreement::of(writer.entries()?, options, |id| writer.shape(id), observer)?;
     let text = found.and_then(|found| serde_json::to_string(&found).ok());
     writer.set_note(NOTE, text.as_deref())?;
-    Ok(writer.finish(observer)?)
+    Ok(writer.finish()?)
 }

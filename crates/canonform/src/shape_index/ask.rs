@@ -1,6 +1,5 @@
 //! Queries made of meshes and of shapes of an index.
 
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -8,7 +7,6 @@ use base::{ContentHash, Observer};
 use mesh::{Surface, TriMesh};
 
 use super::options::{SearchOptions, SearchRank};
-use super::place::Home;
 use super::query::Query;
 use super::search::ShapeSearch;
 use crate::error::Error;
@@ -36,22 +34,6 @@ impl ShapeSearch {
         Ok(Query { seconds: start.elapsed().as_secs_f64(), ..query })
     }
 
-    /// The query of a mesh file, which may be one of the index.
-    pub fn of_file(&self, query: Query, path: &Path) -> Query {
-        let home = Home::new(&self.index().path).ok();
-        Query { place: home.map(|home| home.file_text(path)), ..query }
-    }
-
-    /// The query of a surface whose file may be one of the index, known by its bytes.
-    ///
-    /// # Errors
-    /// [`Error::Index`], if the index cannot be read.
-    pub fn of_bytes(&self, query: Query) -> Result<Query, Error> {
-        let Some(content) = query.content.filter(|_| query.place.is_none()) else { return Ok(query) };
-        let place = self.index().entry_with(&content)?.map(|entry| entry.path);
-        Ok(Query { place, ..query })
-    }
-
     /// A shape of the index as a query, which finds itself. Its mesh is read if it is taken as a part, or if results are
     /// explained; then it need not be there.
     ///
@@ -71,7 +53,8 @@ impl ShapeSearch {
         };
         let part = (options.rank_by == SearchRank::Part).then(part).transpose()?;
         let geometry = options.explain.then(|| self.geometry(&shape.entry)).flatten().map(Arc::new);
-        let (content, place) = (Some(shape.entry.content), Some(shape.entry.path.clone()));
-        Ok(Query { part, geometry, place, ..Query::new(shape, describe_options).named(id, content) })
+        let content = Some(shape.entry.content);
+        let query = Query::new(shape, describe_options).named(id, content);
+        Ok(Query { part, geometry, id: Some(id.to_owned()), ..query })
     }
 }

@@ -1,13 +1,13 @@
 //! How a query and a shape of an index are related, what its components are, and of what it is a component.
 
 use base::{Budget, Observer};
-use descriptors::{PreparedShape, ShapeDistance, ShapeMetric};
+use descriptors::{ShapeDistance, ShapeMetric};
 use index::Entry;
 
 use super::found::{ComponentResult, Hit};
 use super::options::{SearchOptions, SearchRank};
 use super::query::Query;
-use super::search::ShapeSearch;
+use super::search::{Asked, ShapeSearch};
 use super::source::read_unchanged;
 use crate::error::Error;
 use relations::{MeshGeometry, Relation, RelationKind};
@@ -61,7 +61,7 @@ impl ShapeSearch {
     /// The shapes with a component, not the largest, that is the query: nearest first.
     pub(super) fn search_wholes(
         &self,
-        (query, shape): (&Query, &PreparedShape),
+        Asked { query, shape, .. }: &Asked<'_>,
         budget: &Budget,
     ) -> Result<Vec<Hit>, Error> {
         let asked = ShapeMetric::without_size(&shape.fused);

@@ -2,11 +2,11 @@
 
 use std::cmp::Ordering;
 
-use descriptors::ShapeDistance;
+use descriptors::{Boundary, ShapeDistance};
 use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::compare::Comparison;
-use relations::Relation;
+use relations::{Relation, RelationKind};
 use rigid::Handedness;
 
 /// What a result is ordered by, unless it is its distance.
@@ -69,18 +69,19 @@ pub struct Hit {
     #[serde(flatten)]
     pub order: Option<OrderedBy>,
     /// How the query and the shape are related: by descriptions and, if results are explained, by files and meshes. The
-    /// handedness is unknown. What is read from JSON is by descriptions, and has to be [named](Relation::named).
-    #[serde(deserialize_with = "by_descriptions")]
+    /// handedness is unknown. What is read from JSON is a relation by descriptions, to be [told](Hit::by_descriptions) again.
+    #[serde(deserialize_with = "recorded")]
     pub relation: Relation,
     /// The numbers of the comparison with the query, if results are explained.
     #[serde(skip_deserializing, skip_serializing_if = "Option::is_none")]
     pub comparison: Option<Comparison>,
 }
 
-/// The relation by descriptions that a record of one states.
-fn by_descriptions<'de, D: Deserializer<'de>>(from: D) -> Result<Relation, D::Error> {
+/// The distance and the kind of the relation that a record states.
+fn recorded<'de, D: Deserializer<'de>>(from: D) -> Result<Relation, D::Error> {
     #[derive(Deserialize)]
     struct Record {
+        kind: RelationKind,
         because: Numbers,
     }
     #[derive(Deserialize)]
@@ -89,11 +90,26 @@ fn by_descriptions<'de, D: Deserializer<'de>>(from: D) -> Result<Relation, D::Er
         distance: ShapeDistance,
         scale: f64,
     }
-    let Record { because: Numbers { distance, scale } } = Record::deserialize(from)?;
-    Ok(Relation::by_distance(distance, scale, Handedness::Unknown))
+    let Record { kind, because: Numbers { distance, scale } } = Record::deserialize(from)?;
+    let mut relation = Relation::by_distance(distance, scale, Handedness::Unknown);
+    relation.kind = kind;
+    Ok(relation)
 }
 
 impl Hit {
+    /// How a query and a shape are related by their descriptions. Parts of machines do not bend.
+    pub(super) fn by_descriptions(
+        (distance, scale): (ShapeDistance, f64),
+        are_parts: bool,
+        order: Option<OrderedBy>,
+        classes: Option<Boundary>,
+    ) -> Relation {
+        // A part differs from shapes of its own class, too.
+        let classes = classes.filter(|_| !matches!(order, Some(OrderedBy::Part { .. })));
+        let relation = Relation::in_classes(distance, scale, Handedness::Unknown, classes);
+        if are_parts { relation.without_poses() } else { relation }
+    }
+
     /// The order in which one index would have met shapes of several.
     pub(super) fn cmp(&self, other: &Self) -> Ordering {
         let key = |x: &Self| x.order.map_or([x.distance, x.fused], |order| [order.distance(), 0.0]);

@@ -1,22 +1,18 @@
 //! Searching several indexes as one: a query goes to each, and their answers are merged.
 
-use retrieval::UnknownThreshold;
+use relations::RelationKind;
 
+use super::agreement::Agreement;
 use super::found::Hit;
 use super::predict::{n_results, predicted};
 use super::query::Query;
 use super::search::Answer;
 
 /// The answer of one index that holds the shapes of several, from the answers of these to one query: its `k` best results and
-/// its class. `threshold` is that of [all of them](index::class_threshold).
+/// its class. `classes` are those [of all of them](Agreement::of_indexes), which each was asked with.
 ///
 /// Each must have been asked for [`n_results`] results at least. Explanations are not merged.
-pub fn merge_answers(
-    query: &Query,
-    answers: Vec<Answer>,
-    threshold: Option<UnknownThreshold>,
-    k: usize,
-) -> Answer {
+pub fn merge_answers(query: &Query, answers: Vec<Answer>, classes: Option<Agreement>, k: usize) -> Answer {
     let mut merged = Answer { recall: 1.0, ..Answer::default() };
     for answer in answers {
         merged.rank_by = answer.rank_by;
@@ -27,12 +23,17 @@ pub fn merge_answers(
     }
     merged.results.sort_by(Hit::cmp);
     merged.results.truncate(n_results(k));
+    let classes = classes.map(|agreement| agreement.classes());
     for (hit, rank) in merged.results.iter_mut().zip(1..) {
-        hit.rank = rank;
+        let evidence = &hit.relation.evidence;
+        // Of other shapes, their distance says no less than this.
+        let may_be_parts = hit.relation.kind == RelationKind::SameClass;
+        let numbers = (evidence.distance, evidence.scale);
+        hit.relation = Hit::by_descriptions(numbers, may_be_parts, hit.order, classes);
         hit.relation = hit.relation.clone().named(&query.name, &hit.id);
+        hit.rank = rank;
     }
-    let threshold = threshold.filter(|_| merged.rank_by.is_by_signatures());
-    merged.predicted = predicted(&merged.results, (threshold, None), &query.shape.entry.facts);
+    merged.predicted = predicted(&merged.results, classes, &query.shape.entry.facts);
     merged.results.truncate(k);
     merged
 }
@@ -48,7 +49,6 @@ const LEAST_CANDIDATES: usize = 40;
 
 #[cfg(test)]
 mod tests {
-    use index::{Index, class_threshold};
     use mesh::shapes;
 
     use super::*;
@@ -58,7 +58,10 @@ mod tests {
 
     /// The answer of some shards, as it is sent from other processes.
     fn asked(shards: &[ShapeSearch], query: &Query, rank_by: SearchRank, k: usize) -> Answer {
-        let options = SearchOptions { k: n_results(k), rank_by, ..SearchOptions::default() };
+        let paths: Vec<_> = shards.iter().map(|shard| shard.index().path.clone()).collect();
+        let classes = Agreement::of_indexes(&paths, &()).unwrap();
+        assert!(classes.is_some());
+        let options = SearchOptions { k: n_results(k), rank_by, classes, ..SearchOptions::default() };
         let answers = shards.iter().map(|shard| {
             let answer = shard.search(query, &options, &()).unwrap();
             // Among its own results and a name that it does not hold, a shard finds the same.
@@ -67,16 +70,15 @@ mod tests {
             assert_eq!(shard.search_among(query, Some(&ids), &options, &()).unwrap().results, answer.results);
             serde_json::from_str(&serde_json::to_string(&answer).unwrap()).unwrap()
         });
-        let answers = answers.collect();
-        let indexes: Vec<Index> = shards.iter().map(|s| Index::open(&s.index().path).unwrap()).collect();
-        merge_answers(query, answers, class_threshold(&indexes).unwrap(), k)
+        merge_answers(query, answers.collect(), classes, k)
     }
 
     #[test]
     fn shards_answer_as_one_index() {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
-        for (i, size) in [0.7, 0.75, 0.8].into_iter().enumerate() {
+        // Thirty pairs of one class, and none of that many in a shard.
+        for (i, size) in [0.7, 0.75, 0.8, 0.85, 0.9, 0.95].into_iter().enumerate() {
             mesh_io::write(&at(&format!("ring{i}.off")), &shapes::torus(20, 10, 2.0, size)).unwrap();
             mesh_io::write(&at(&format!("tube{i}.off")), &shapes::torus(30, 8, 4.0, size)).unwrap();
         }
@@ -100,7 +102,7 @@ mod tests {
             for (k, rank_by) in [
                 (0, SearchRank::Plain),
                 (2, SearchRank::Plain),
-                (10, SearchRank::Plain),
+                (15, SearchRank::Plain),
                 (2, SearchRank::Forms),
             ] {
                 let options = SearchOptions { k, rank_by, ..Default::default() };

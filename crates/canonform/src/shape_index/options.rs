@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::agreement::Agreement;
+
 /// How an index is searched.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SearchOptions {
@@ -12,11 +14,13 @@ pub struct SearchOptions {
     pub explain: bool,
     /// How results are ordered. Default: [`SearchRank::Plain`], by combined distance.
     pub rank_by: SearchRank,
+    /// The classes [of all indexes](Agreement::of_indexes) that are searched as one. Default: those of the index.
+    pub classes: Option<Agreement>,
 }
 
 impl Default for SearchOptions {
     fn default() -> Self {
-        Self { k: 10, explain: false, rank_by: SearchRank::Plain }
+        Self { k: 10, explain: false, rank_by: SearchRank::Plain, classes: None }
     }
 }
 
@@ -39,14 +43,4 @@ pub enum SearchRank {
     ///
     /// Compares the query with every shape of the index by [`descriptors::SampledForm::spectrum`].
     Forms,
-}
-
-impl SearchRank {
-    /// Whether results are ordered by signatures first, as the threshold of unknown classes is measured.
-    pub(super) fn is_by_signatures(self) -> bool {
-        match self {
-            Self::Plain | Self::Graph => true,
-            Self::Part | Self::Forms => false,
-        }
-    }
 }

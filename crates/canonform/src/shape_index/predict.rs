@@ -3,7 +3,7 @@
 use descriptors::{Boundary, PartDistance, ShapeMetric};
 use index::Facts;
 use relations::Relation;
-use retrieval::{Labels, Neighbor, Tally, UnknownThreshold, vote};
+use retrieval::{Labels, Neighbor, Tally, vote};
 use serde::Serialize;
 
 use super::found::{Hit, OrderedBy};
@@ -43,9 +43,6 @@ pub struct Prediction {
     pub voters: usize,
     /// Share of the votes for the class, from 0 to 1; nearer neighbors count more.
     pub confidence: f64,
-    /// Fused distance below which a shape votes whatever its combined distance, since classes of this index are that wide; `None`
-    /// if the classes are too small to estimate it.
-    pub threshold: Option<f64>,
     /// Combined distance below which a shape votes, as it may be of one class with the query; part distance, if
     /// the query is taken as a part.
     pub class_below: f64,
@@ -126,31 +123,22 @@ fn shortcut_warning(facts: &Facts) -> Option<String> {
 
 /// The vote of the first [`VOTERS`] results but the query itself, so that it does not depend on their number.
 ///
-/// A result at combined distance `d` and fused distance `f` votes if `r = min(d / c, f / t)` is below 1, with `c` the
-/// boundary of a class and `t` the width of the classes of the index; its weight is `(1 - r²)²`. If the query is
-/// taken as a part, `r` is the part distance over [`CLEAR_FIT`] times the smallest, but at most that of parts of shapes of one
-/// class, and the vote has to be unanimous.
-pub(super) fn predicted(
-    results: &[Hit],
-    (threshold, classes): (Option<UnknownThreshold>, Option<Boundary>),
-    query: &Facts,
-) -> Prediction {
+/// A result at combined distance `d` votes if `r = d / c` is below 1, with `c` the boundary of a class; its weight is `(1 - r²)²`. If
+/// the query is taken as a part, `r` is the part distance over [`CLEAR_FIT`] times the smallest, but at most that of parts of shapes
+/// of one class, and the vote has to be unanimous.
+pub(super) fn predicted(results: &[Hit], classes: Option<Boundary>, query: &Facts) -> Prediction {
     let others: Vec<&Hit> = results.iter().filter(|result| !result.itself).take(VOTERS).collect();
     let results = &others[..];
     let as_part = results.first().and_then(|first| part_distance(first));
     let class_below =
         as_part.map_or(classes.unwrap_or(ShapeMetric::SAME_CLASS).at, |_| PartDistance::SAME_CLASS);
-    let threshold = threshold.map(|threshold| threshold.distance);
     let labels = Labels::new(&results.iter().map(|result| &result.label).collect::<Vec<_>>());
     let label = |class: usize| labels.classes()[class].clone();
     // A surface of a few faces fits at distance 0.
     let part_limit = as_part.map(|nearest| (CLEAR_FIT * nearest).min(class_below).max(f64::MIN_POSITIVE));
-    let reach = |result: &Hit| {
-        if let Some((distance, limit)) = part_distance(result).zip(part_limit) {
-            return distance / limit;
-        }
-        let combined = result.relation.evidence.distance.combined / class_below;
-        threshold.map_or(combined, |threshold| combined.min(result.fused / threshold))
+    let reach = |result: &Hit| match part_distance(result).zip(part_limit) {
+        Some((distance, limit)) => distance / limit,
+        None => result.relation.evidence.distance.combined / class_below,
     };
     // Shapes without a class have no vote.
     let labelled = results.iter().enumerate().filter(|(_, result)| !result.label.is_empty());
@@ -178,7 +166,6 @@ pub(super) fn predicted(
         votes: vote.tally.first().map_or(0, |winner| winner.votes),
         voters: vote.voters,
         confidence: vote.tally.first().map_or(0.0, |winner| winner.share),
-        threshold,
         class_below,
         tally,
         nearest,
@@ -236,9 +223,6 @@ impl Prediction {
             "unknown. The nearest shape, {} {class}, is at combined distance {distance:.3}: {relation}. Shapes of one class are below {:.3}",
             nearest.id, self.class_below
         );
-        if let Some(threshold) = self.threshold {
-            words += &format!(", and classes of this index are up to {threshold:.3} wide by signatures");
-        }
         if self.unknown == Some(Unknown::Partial) {
             words += &format!(
                 ". The query may be a part of a shape ({}), but was compared as a whole; ranking by parts compares it as one",
@@ -261,12 +245,6 @@ impl Prediction {
             let others: Vec<_> = others.iter().map(|o| format!("{} {}", o.label, o.votes)).collect();
             let split = if self.confidence < CLEAR { "; the vote is split" } else { "" };
             words += &format!("{split}; other votes: {}", others.join(", "));
-        }
-        let may_be = |nearest: &NearestShape| nearest.relation.evidence.distance.combined < self.class_below;
-        if let (false, Some(threshold)) = (self.nearest.as_ref().is_some_and(may_be), self.threshold) {
-            words += &format!(
-                "; no shape is near enough for one class elsewhere, but classes of this index are up to {threshold:.3} wide by signatures"
-            );
         }
         words
     }
@@ -314,24 +292,22 @@ mod tests {
         let people: &[_] = &[("david", 1.0), ("michael", 1.05), ("david", 1.1), ("michael", 1.1)];
         type Row<'a> =
             (&'a [(&'a str, f64)], Option<f64>, Facts, Result<(&'a str, usize), Unknown>, &'a [&'a str]);
-        let table: [Row<'_>; 13] = [
-            // Narrow classes do not overrule the distance.
+        let table: [Row<'_>; 12] = [
             (near, None, closed(), Ok(("cat", 2)), &["cat, by 2 of 2 votes, confidence 1.00"]),
-            (near, Some(0.2), closed(), Ok(("cat", 2)), &[]),
+            // Classes of a collection may be narrower or wider than those of the metric.
+            (near, Some(0.2), closed(), Err(Unknown::NothingNear), &["one class are below 0.200"]),
             (near, Some(9.0), open, Ok(("cat", 2)), &[]),
             (near, None, welded(1), Ok(("cat", 2)), &["probably has a shortcut", "in one place"]),
             (near, None, welded(3), Ok(("cat", 2)), &["in 3 places"]),
             (people, None, closed(), Ok(("david", 2)), &["the vote is split; other votes: michael 2"]),
-            // Classes of a collection may be wider than those of the metric.
-            (far, Some(10.0), closed(), Ok(("cat", 1)), &["up to 10.000 wide"]),
+            (far, Some(10.0), closed(), Ok(("cat", 1)), &[]),
             (
                 far,
-                Some(2.0),
-                closed(),
+                None,
+                small_holes,
                 Err(Unknown::NothingNear),
-                &["cat1", "9.250", "not the same shape", "up to 2.000 wide", "one class are below 3.730"],
+                &["cat1", "9.250", "not the same shape", "one class are below 3.730"],
             ),
-            (far, None, small_holes, Err(Unknown::NothingNear), &[]),
             (far, None, lossy, Err(Unknown::Partial), &["14 % of its surface", "ranking by parts"]),
             (far, None, open, Err(Unknown::Partial), &["1.2 times", "ranking by parts"]),
             (
@@ -344,10 +320,10 @@ mod tests {
             (&[], None, closed(), Err(Unknown::EmptyIndex), &["The index is empty"]),
         ];
         for (found, width, facts, expected, words) in table {
-            let width = width.map(|distance| UnknownThreshold { distance, missed: 0.0, mistaken: 0.0 });
+            let classes = width.map(|at| Boundary::new(at, 1.0));
             let hits = results(found);
             let Prediction { label, votes, unknown, explanation, tally, nearest, .. } =
-                predicted(&hits, (width, None), &facts);
+                predicted(&hits, classes, &facts);
             assert_eq!(unknown.map_or(Ok((label.as_deref().unwrap_or_default(), votes)), Err), expected);
             assert!(words.iter().all(|words| explanation.contains(words)), "{explanation}");
             assert!(explanation.contains("shortcut") == (facts.shortcuts > 0), "{explanation}");
@@ -364,7 +340,7 @@ mod tests {
     fn no_shape_votes_on_its_own_class() {
         let mut near = results(&[("dog", 0.0), ("cat", 0.9), ("cat", 1.0)]);
         near[0].itself = true;
-        let found = predicted(&near, (None, None), &closed());
+        let found = predicted(&near, None, &closed());
         assert_eq!((found.label.as_deref(), found.voters), (Some("cat"), 2));
         assert_eq!(found.nearest.unwrap().id, "cat2");
     }
@@ -384,7 +360,7 @@ mod tests {
                 hit.order = Some(OrderedBy::Part { part_distance, part_share: 0.7 });
             }
             let facts = Facts { longest_boundary: 1.25, ..closed() };
-            let found = predicted(&hits, (None, None), &facts);
+            let found = predicted(&hits, None, &facts);
             assert_eq!(found.unknown.map_or(Ok(found.label.as_deref().unwrap_or_default()), Err), expected);
             assert!(found.explanation.contains(words), "{}", found.explanation);
         }

@@ -27,8 +27,8 @@ pub struct Query {
     pub options: String,
     /// The [hash](crate::collection::content_hash) of its file.
     pub content: Option<ContentHash>,
-    /// Where its mesh is, as the index would state it.
-    pub place: Option<String>,
+    /// The shape of the index that it is, which has no vote on its own class. Of a file, that is the first one with its bytes.
+    pub id: Option<String>,
     /// What its fit as a part is measured by. Only with it can results be ordered by that.
     pub part: Option<PartDiscAreas>,
     /// The mesh in space, by which results are explained.
@@ -49,7 +49,7 @@ impl Query {
             shape,
             options: options.text(),
             content: None,
-            place: None,
+            id: None,
             part: None,
             geometry: None,
             is_component: false,
@@ -63,23 +63,10 @@ impl Query {
         Self { name: name.to_owned(), content, ..self }
     }
 
-    /// The query with what its fit as a part is measured by.
-    ///
-    /// # Errors
-    /// Those of embedding the surface.
-    pub fn as_part(
-        self,
-        surface: &Surface,
-        options: &DescribeOptions,
-        observer: &dyn Observer,
-    ) -> Result<Self, Error> {
-        Ok(Self { part: Some(describe_part(surface, options, observer)?), ..self })
-    }
-
     /// The query with what a search needs of its mesh and its repaired `surface`.
     ///
     /// # Errors
-    /// As of [`as_part`](Self::as_part).
+    /// Those of embedding the surface.
     pub fn with_mesh(
         mut self,
         mesh: &TriMesh,
@@ -88,7 +75,7 @@ impl Query {
         observer: &dyn Observer,
     ) -> Result<Self, Error> {
         if search.rank_by == SearchRank::Part {
-            self = self.as_part(surface, describe, observer)?;
+            self.part = Some(describe_part(surface, describe, observer)?);
         }
         if search.explain {
             self.geometry = MeshGeometry::new(mesh, self.content).map(Arc::new);

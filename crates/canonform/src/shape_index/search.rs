@@ -6,15 +6,13 @@ use std::time::Instant;
 
 use base::{Budget, Observer};
 use collection::Storage;
-use descriptors::{Boundary, DiscAreas};
-use descriptors::{PartDiscAreas, PartDistance, PreparedShape, ShapeMetric, ShapePair, SignatureKind};
+use descriptors::{Boundary, DiscAreas, PartDistance, PreparedShape, ShapeMetric, ShapePair, SignatureKind};
 use index::{Entry, Index, IndexError, VectorTable};
 use mesh::TriMesh;
 use mesh_io::FileSource;
 use rayon::prelude::*;
-use relations::Relation;
 use retrieval::{LINKS, Neighbor, graph_rank};
-use rigid::{Alignment, Handedness};
+use rigid::Alignment;
 use serde::{Deserialize, Serialize};
 
 use super::agreement::Agreement;
@@ -77,6 +75,16 @@ pub struct SearchSeconds {
     pub describe: f64,
     /// Searching, aligning and voting.
     pub search: f64,
+}
+
+/// A query, ready to be compared with the shapes of an index.
+pub(super) struct Asked<'a> {
+    pub(super) query: &'a Query,
+    pub(super) shape: PreparedShape,
+    /// The name of the shape that it is.
+    itself: Option<String>,
+    /// The boundary of classes.
+    classes: Option<Boundary>,
 }
 
 /// An index that is open for searches.
@@ -197,10 +205,15 @@ impl ShapeSearch {
         observer: &dyn Observer,
     ) -> Result<Answer, Error> {
         let budget = observer.budget();
-        let shape = self.prepared_query(query)?;
-        let mut answer = self.nearest((query, &shape), ids, options, &budget)?;
+        let itself = match (&query.id, &query.content) {
+            (None, Some(content)) => self.index.entry_with(content)?.map(|entry| entry.id),
+            (id, _) => id.clone(),
+        };
+        let classes = options.classes.map(|agreement| agreement.classes()).or(self.classes);
+        let asked = Asked { query, shape: self.prepared_query(query)?, itself, classes };
+        let mut answer = self.nearest(&asked, ids, options, &budget)?;
         if options.explain && !query.is_component {
-            answer.wholes = self.search_wholes((query, &shape), &budget)?;
+            answer.wholes = self.search_wholes(&asked, &budget)?;
         }
         Ok(answer)
     }
@@ -217,7 +230,7 @@ impl ShapeSearch {
     /// The nearest of all shapes or of some, and the class.
     fn nearest(
         &self,
-        (query, shape): (&Query, &PreparedShape),
+        asked: &Asked<'_>,
         ids: Option<&[String]>,
         options: &SearchOptions,
         budget: &Budget,
@@ -228,9 +241,9 @@ impl ShapeSearch {
         let held = |id: &String| self.index.contains(id).map(|held| held.then(|| id.clone())).transpose();
         let ids = ids.map(|ids| ids.iter().filter_map(held).collect::<Result<Vec<_>, _>>()).transpose()?;
         let ordered = match (rank_by, &ids) {
-            (SearchRank::Graph, None) => Some(self.on_graph(&shape.fused, wanted)?),
+            (SearchRank::Graph, None) => Some(self.on_graph(&asked.shape.fused, wanted)?),
             (SearchRank::Part | SearchRank::Forms, _) => {
-                Some(self.by_all(query, rank_by, &ids, wanted, budget)?)
+                Some(self.by_all(asked.query, rank_by, &ids, wanted, budget)?)
             }
             (SearchRank::Plain | SearchRank::Graph, _) => None,
         };
@@ -238,29 +251,23 @@ impl ShapeSearch {
             Some(ordered) => {
                 let candidates = (0..ordered.len()).map(|index| Neighbor { index, distance: 0.0 });
                 let at = |i: usize| (ordered[i].0.as_str(), Some(ordered[i].1));
-                self.aligned((query, shape), candidates, ordered.len(), &at, budget)?
+                self.aligned(asked, candidates, ordered.len(), &at, budget)?
             }
             None => {
                 let some = ids.map(|ids| self.table_of(&ids)).transpose()?;
                 let all = some.as_ref().map_or_else(|| self.index.vector_table(), Ok)?;
-                self.aligned(
-                    (query, shape),
-                    bounds(&shape.fused, all),
-                    wanted,
-                    &|i| (all.id(i), None),
-                    budget,
-                )?
+                let candidates = bounds(&asked.shape.fused, all);
+                self.aligned(asked, candidates, wanted, &|i| (all.id(i), None), budget)?
             }
         };
         let (mut results, alignments): (Vec<Hit>, Vec<_>) = found.into_iter().unzip();
-        let threshold = self.index.threshold.filter(|_| rank_by.is_by_signatures());
-        let predicted = predicted(&results, (threshold, self.classes), &query.shape.entry.facts);
+        let predicted = predicted(&results, asked.classes, &asked.query.shape.entry.facts);
         results.truncate(options.k);
         if options.explain {
             let found = results.par_iter_mut().zip(alignments);
-            found.try_for_each(|(hit, best)| self.explain((query, shape), hit, best, budget))?;
+            found.try_for_each(|(hit, best)| self.explain(asked, hit, best, budget))?;
         }
-        let seconds = SearchSeconds { describe: query.seconds, search: start.elapsed().as_secs_f64() };
+        let seconds = SearchSeconds { describe: asked.query.seconds, search: start.elapsed().as_secs_f64() };
         Ok(Answer {
             results,
             rank_by,
@@ -277,15 +284,15 @@ impl ShapeSearch {
     /// Adds what the files and meshes of a query and a result tell. `best` is the alignment of their forms.
     fn explain(
         &self,
-        (query, shape): (&Query, &PreparedShape),
+        asked: &Asked<'_>,
         hit: &mut Hit,
         best: Alignment,
         budget: &Budget,
     ) -> Result<(), Error> {
         budget.check()?;
         let other = self.prepared(&hit.id)?;
-        hit.comparison = Some(compare(&ShapePair::new([shape, &other]).with_best(best))?);
-        hit.relation = self.related(query, &self.index.entry(&hit.id)?, hit.relation.clone())?;
+        hit.comparison = Some(compare(&ShapePair::new([&asked.shape, &other]).with_best(best))?);
+        hit.relation = self.related(asked.query, &self.index.entry(&hit.id)?, hit.relation.clone())?;
         Ok(())
     }
 
@@ -319,8 +326,7 @@ impl ShapeSearch {
         Ok(ordered.collect())
     }
 
-    /// The first of all shapes or of some by a distance that is measured from each of them: how well the query fits as a part, or
-    /// how much forms differ.
+    /// The first of all shapes or of some by a distance that is measured from each of them.
     fn by_all(
         &self,
         query: &Query,
@@ -329,19 +335,9 @@ impl ShapeSearch {
         wanted: usize,
         budget: &Budget,
     ) -> Result<Vec<OrderedShape>, Error> {
-        let part = query.part.as_ref().filter(|_| rank == SearchRank::Part);
-        if rank == SearchRank::Part && part.is_none() {
-            return Err(Error::NoPart);
-        }
-        let spectrum = query.shape.signatures.get(SignatureKind::FormSpectrum.name());
-        let spectrum = spectrum.map_or(&[][..], Vec::as_slice);
-        let measured = |id: &str| match part {
-            Some(part) => self.fit(part, id),
-            None => self.form_distance(spectrum, id),
-        };
         let one = |id: String| {
             budget.check()?;
-            Ok((measured(&id)?, id))
+            Ok((self.measured(query, rank, &id)?, id))
         };
         let ids = match ids {
             Some(ids) => ids.clone(),
@@ -353,28 +349,25 @@ impl ShapeSearch {
         Ok(found.into_iter().map(|(order, id)| (id, order)).collect())
     }
 
-    /// The distance from the spectrum of a form, in units of two poses of one body.
+    /// How well the query fits into a shape as a part, or how much their forms differ, in units of two poses of one body.
     ///
     /// # Errors
-    /// [`IndexError::Damaged`] if the spectrum of the shape is not stored.
-    fn form_distance(&self, spectrum: &[f32], id: &str) -> Result<OrderedBy, Error> {
+    /// [`IndexError::Damaged`] if what is measured is not stored of the shape.
+    fn measured(&self, query: &Query, rank: SearchRank, id: &str) -> Result<OrderedBy, Error> {
+        if rank == SearchRank::Part {
+            let part = query.part.as_ref().ok_or(Error::NoPart)?;
+            let areas = self.index.vector(id, "disc_areas")?;
+            let areas = areas.and_then(|numbers| DiscAreas::from_numbers(&numbers));
+            let areas = areas.ok_or_else(|| missing(&self.index.path, id, "disc areas"))?;
+            let PartDistance { distance: part_distance, share: part_share } = part.distance(&areas);
+            return Ok(OrderedBy::Part { part_distance, part_share });
+        }
         let kind = SignatureKind::FormSpectrum;
+        let own = query.shape.signatures.get(kind.name()).map_or(&[][..], Vec::as_slice);
         let found = self.index.vector(id, &format!("signature_{}", kind.name()))?;
         let what = format_args!("{} signature", kind.name());
         let found = found.ok_or_else(|| missing(&self.index.path, id, what))?;
-        Ok(OrderedBy::Forms { form_distance: ShapeMetric::fused(spectrum, &found) / ShapeMetric::unit(kind) })
-    }
-
-    /// How well a part fits into a shape.
-    ///
-    /// # Errors
-    /// [`IndexError::Damaged`] if the disc areas of the shape are not stored.
-    fn fit(&self, part: &PartDiscAreas, id: &str) -> Result<OrderedBy, Error> {
-        let areas =
-            self.index.vector(id, "disc_areas")?.and_then(|numbers| DiscAreas::from_numbers(&numbers));
-        let areas = areas.ok_or_else(|| missing(&self.index.path, id, "disc areas"))?;
-        let PartDistance { distance, share } = part.distance(&areas);
-        Ok(OrderedBy::Part { part_distance: distance, part_share: share })
+        Ok(OrderedBy::Forms { form_distance: ShapeMetric::fused(own, &found) / ShapeMetric::unit(kind) })
     }
 
     /// Aligns the forms of candidates, in ascending order of lower bounds of their combined distances: of as many as are needed for
@@ -382,13 +375,13 @@ impl ShapeSearch {
     /// a candidate, and what it is ordered by. Returns how many alignments were begun, too.
     fn aligned<'a>(
         &self,
-        (query, shape): (&Query, &PreparedShape),
+        asked: &Asked<'_>,
         candidates: impl Iterator<Item = Neighbor>,
         wanted: usize,
         at: &(dyn Fn(usize) -> (&'a str, Option<OrderedBy>) + Sync),
         budget: &Budget,
     ) -> Result<(Vec<(Hit, Alignment)>, usize), Error> {
-        let mut refined = rerank(shape, candidates, wanted, |i| {
+        let mut refined = rerank(&asked.shape, candidates, wanted, |i| {
             budget.check()?;
             self.prepared(at(i).0)
         })?;
@@ -397,15 +390,12 @@ impl ShapeSearch {
             refined.nearest.into_iter().zip(1..).map(|((Neighbor { index, distance }, found), rank)| {
                 let (id, order) = at(index);
                 let Entry { id, label, path, .. } = self.index.entry(id)?;
-                let (distances, scale) = (found.shape_distance, found.scale);
-                // A part differs from shapes of its own class, too.
-                let classes = self.classes.filter(|_| !matches!(order, Some(OrderedBy::Part { .. })));
-                let relation = Relation::in_classes(distances, scale, Handedness::Unknown, classes);
+                let numbers = (found.shape_distance, found.scale);
                 // Only what has the same description may be called the same part without its mesh.
-                let is_part = found.are_parts && found.fused > 0.0;
-                let relation =
-                    if is_part { relation.without_poses() } else { relation }.named(&query.name, &id);
-                let (fused, itself) = (found.fused, query.place.as_ref() == Some(&path));
+                let are_parts = found.are_parts && found.fused > 0.0;
+                let relation = Hit::by_descriptions(numbers, are_parts, order, asked.classes);
+                let relation = relation.named(&asked.query.name, &id);
+                let (fused, itself) = (found.fused, asked.itself.as_ref() == Some(&id));
                 let hit =
                     Hit { rank, id, label, itself, path, distance, fused, order, relation, comparison: None };
                 Ok((hit, found.alignment))
@@ -585,7 +575,7 @@ mod tests {
         let mut writer = IndexWriter::build(&path, &search.index().options).unwrap();
         let shape = Shape { disc_areas: Vec::new(), ..search.index().shape("ball0").unwrap() };
         writer.put(&[shape]).unwrap();
-        writer.finish(&()).unwrap();
+        writer.finish().unwrap();
         let old = ShapeSearch::open(&path).unwrap();
         let options = SearchOptions { rank_by: SearchRank::Part, ..SearchOptions::default() };
         let query = old.query_of("ball0", &options, &()).unwrap();

@@ -38,10 +38,8 @@ impl Query {
             Self::Mesh(path) => {
                 let mesh = read_file(path, common)?.mesh;
                 let search = || {
-                    let is_hashed = options.explain && !is_stream(path);
-                    let content = is_hashed.then(|| content_hash(path)).transpose()?;
+                    let content = if is_stream(path) { None } else { Some(content_hash(path)?) };
                     let query = index.query(&mesh, (&file_name(path), content), options, &())?;
-                    let query = if is_stream(path) { query } else { index.of_file(query, path) };
                     index.search(&query, options, &())
                 };
                 search().map_err(|fault| named(path, fault))
@@ -69,7 +67,8 @@ fn queries(args: &SearchArgs, index: &ShapeSearch) -> Result<Vec<Query>> {
 /// found for some.
 pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
     let index = ShapeSearch::open(&args.index)?;
-    let options = SearchOptions { k: args.k, explain: args.explain, rank_by: args.rank };
+    let (k, explain, rank_by) = (args.k, args.explain, args.rank);
+    let options = SearchOptions { k, explain, rank_by, ..SearchOptions::default() };
     let queries = queries(args, &index)?;
     let (mut answers, mut failed) = (Vec::new(), Vec::new());
     for query in &queries {

@@ -19,7 +19,7 @@ fn readers_keep_the_state_that_they_opened() {
     writer.commit().unwrap();
     let committed = Index::open(&path).unwrap();
     assert!(!committed.is_finished && committed.change > meanwhile.change);
-    let index = writer.finish(&()).unwrap();
+    let index = writer.finish().unwrap();
     assert_eq!([&early, &meanwhile, &committed, &index].map(Index::len), [5; 4]);
     for old in [&early, &meanwhile] {
         assert!(old.entry(&id(5)).is_err() && old.shape(&id(0)).unwrap() == shape(0));

@@ -15,12 +15,11 @@ fn order_batches_and_history_do_not_matter() {
         writer.put(&[shape(i)]).unwrap();
         writer.commit().unwrap();
     }
-    writer.finish(&()).unwrap();
+    writer.finish().unwrap();
     assert_ne!(export(&path), whole);
     folder.change(&path, &[], &[id(41), id(40)]);
     assert_eq!(export(&path), whole);
     let both = [path, folder.path("whole")].map(|path| Index::open(&path).unwrap());
-    assert_eq!(both[0].threshold, both[1].threshold);
     let nearest = both.each_ref().map(|index| index.nearest(&shape(3).fused, 30).unwrap());
     assert_eq!(nearest[0], nearest[1]);
     for format in ExportFormat::ALL {
@@ -46,7 +45,7 @@ fn entries_change_without_vectors() {
     let mut entry = writer.entry(&id(2)).unwrap().unwrap();
     entry.label = "dog".to_owned();
     writer.set_entries(std::slice::from_ref(&entry)).unwrap();
-    writer.finish(&()).unwrap();
+    writer.finish().unwrap();
     let index = Index::open(&path).unwrap();
     assert_eq!(index.entry(&id(2)).unwrap().label, "dog");
     assert_eq!(index.shape(&id(2)).unwrap().form, shape(2).form);

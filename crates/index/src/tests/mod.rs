@@ -39,7 +39,7 @@ impl Folder {
         let mut writer = IndexWriter::open(path).unwrap();
         writer.put(&added.iter().copied().map(shape).collect::<Vec<_>>()).unwrap();
         writer.remove(removed).unwrap();
-        writer.finish(&()).unwrap();
+        writer.finish().unwrap();
     }
 
     /// A finished index of shapes 0 to `n`.
@@ -53,7 +53,7 @@ impl Folder {
     pub(crate) fn fill(&self, path: &Path, shapes: &[Shape]) {
         let mut writer = IndexWriter::build(path, OPTIONS).unwrap();
         writer.put(shapes).unwrap();
-        writer.finish(&()).unwrap();
+        writer.finish().unwrap();
     }
 }
 

@@ -1,4 +1,4 @@
-//! All vectors of an index in memory: the nearest to a query, and the threshold of unknown classes. Knows no file.
+//! All vectors of an index in memory: the nearest to a query. Knows no file.
 //!
 //! **Invariant.** Nothing depends on the number of threads, nor on the order or the history of insertions.
 
@@ -6,7 +6,5 @@ mod kernels;
 mod table;
 #[cfg(test)]
 mod tests;
-mod threshold;
 
 pub use table::VectorTable;
-pub(crate) use threshold::threshold;

@@ -1,12 +1,10 @@
 //! Laws of searches: single precision decides nothing.
 
-use std::convert::Infallible;
-
 use base::SplitMix;
-use retrieval::{Neighbor, UnknownThreshold};
+use retrieval::Neighbor;
 
+use super::VectorTable;
 use super::kernels::{least_loss, losses_into};
-use super::{VectorTable, threshold};
 
 /// `n` vectors of `dim` numbers, uniform in -1..1.
 fn noise(n: usize, dim: usize, seed: u64) -> Vec<f32> {
@@ -74,40 +72,4 @@ fn vectors_come_in_the_order_of_their_distances_for_ties_and_outliers_too() {
         }
     }
     assert_eq!(VectorTable::default().nearest(&[], 3), []);
-}
-
-/// The threshold of vectors of 16 numbers in pieces that end at these numbers.
-fn of_pieces(ends: &[usize], rows: &[f32], class: impl Fn(usize) -> String) -> Option<UnknownThreshold> {
-    let found = threshold(|visit| {
-        let mut start = 0;
-        for end in ends {
-            let mut table = VectorTable::default();
-            (start..*end).for_each(|i| table.push(&i.to_string(), &rows[16 * i..][..16]));
-            visit(&table, &(start..*end).map(&class).collect::<Vec<_>>());
-            start = *end;
-        }
-        Ok::<_, Infallible>(())
-    });
-    found.unwrap()
-}
-
-#[test]
-fn pieces_give_the_threshold_of_the_whole() {
-    let rows = noise(900, 16, 5);
-    let class = |i: usize| if i % 5 == 4 { String::new() } else { format!("c{}", i % 7) };
-    let whole = of_pieces(&[900], &rows, class);
-    assert!(whole.is_some());
-    assert_eq!(of_pieces(&[10, 700, 900], &rows, class), whole);
-}
-
-#[test]
-fn matches_the_threshold_from_all_pairs() {
-    let positions = [0.0f32, 1.0, 2.5, 10.0, 11.0, 30.0];
-    let rows: Vec<f32> = positions.iter().flat_map(|x| [&[*x][..], &[0.0; 15]].concat()).collect();
-    let of = |classes: [&str; 6]| of_pieces(&[6], &rows, |i| classes[i].to_owned());
-    // Own: 1, 1, 1.5, 1, 1; foreign: 10, 9, 7.5, 7.5, 8.5, 19.
-    let expected = UnknownThreshold { distance: 4.5, missed: 0.0, mistaken: 0.0 };
-    assert_eq!(of(["a", "a", "a", "b", "b", "c"]), Some(expected));
-    assert_eq!(of(["a", "b", "c", "d", "e", "f"]), None);
-    assert_eq!(of([""; 6]), None);
 }

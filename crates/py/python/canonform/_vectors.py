@@ -67,8 +67,8 @@ class About:
     ----------
     options
         How the shapes were described.
-    threshold
-        The fused distance beyond which a shape is of no class.
+    classes
+        How well classes and distances of all shapes agree.
     shards
         Size and time of each index when it was read.
     probes
@@ -80,7 +80,7 @@ class About:
     """
 
     options: str = ""
-    threshold: dict[str, Any] | None = None
+    classes: dict[str, Any] | None = None
     shards: dict[str, list[int]] = field(default_factory=dict)
     probes: int = 0
     partitions: int = 0
@@ -109,7 +109,8 @@ _OPENED: dict[str, Any] = {}
 def about(table: lance.LanceDataset) -> About:
     """What a table says about itself."""
     stored = (table.schema.metadata or {}).get(_ABOUT.encode())
-    return About() if stored is None else About(**json.loads(stored))
+    known = {} if stored is None else json.loads(stored)
+    return About(**{name: value for name, value in known.items() if name in About.__dataclass_fields__})
 
 
 def describe(table: lance.LanceDataset, facts: About) -> None:

@@ -300,10 +300,10 @@ def vector_table(shards: Iterable[AnyPath], table: AnyPath, *, client: Client | 
             for path, name in new:
                 changed += _vectors.change(stored, name, rows_of(path, name))
         n = stored.count_rows()
-        # A few vectors beside the partitions are compared one by one, and hardly move the threshold.
+        # A few vectors beside the partitions are compared one by one, and hardly move the boundary of classes.
         trains = n > _vectors.LEAST and (facts.partitions == 0 or 8 * _vectors.unindexed(stored) > n)
         if trains or new and n <= _vectors.LEAST:
-            facts.threshold = json.loads(_canonform.class_threshold(paths))
+            facts.classes = json.loads(_canonform.agreement(paths))
         if trains:
             workers = 1 if client is None else max(1, len(client.nthreads()))
             facts.partitions = _vectors.train(stored, workers, lambda make, items: _mapped(client, make, items, call))
@@ -452,8 +452,9 @@ class _Search:
             for _, id, shard in self.near(packed, n_candidates):
                 candidates.setdefault(shard, []).append(id)
             asked = {**candidates}
-        answers = self.ask("search_among", [(shard, packed, ids, wanted, rank, False) for shard, ids in asked.items()])
-        report: dict[str, Any] = json.loads(_canonform.merge_answers(packed, answers, json.dumps(facts.threshold), k))
+        classes = json.dumps(facts.classes)
+        answers = self.ask("search_among", [(shard, packed, ids, wanted, rank, False, classes) for shard, ids in asked.items()])
+        report: dict[str, Any] = json.loads(_canonform.merge_answers(packed, answers, classes, k))
         report |= {"n_shapes": n, "measured": n, "rank_by": rank}
         if facts.probes and rank == "plain" and not self.exact:
             loose = _vectors.unindexed(self.table)
@@ -465,7 +466,7 @@ class _Search:
         }
         self.shards_of |= {id: os.path.join(self.folder, shard) for shard, ids in held.items() for id in ids}
         if explain:
-            items = [(shard, packed, held.get(shard, []), len(held.get(shard, [])), rank, True) for shard in facts.shards | held]
+            items = [(shard, packed, held.get(shard, []), len(held.get(shard, [])), rank, True, classes) for shard in facts.shards | held]
             explained = [json.loads(some) for some in self.ask("search_among", items)]
             for result in (result for some in explained for result in some["results"]):
                 results[result["id"]] |= {key: result[key] for key in ("relation", "comparison")}

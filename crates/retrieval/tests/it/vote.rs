@@ -5,17 +5,6 @@ fn neighbors(distances: &[f64]) -> Vec<Neighbor> {
 }
 
 #[test]
-fn the_threshold_separates_own_from_foreign_distances() {
-    let found = UnknownThreshold::from_distances(&[1.0, 2.0, 1.5], &[4.0, 6.0]).unwrap();
-    assert_eq!(found, UnknownThreshold { distance: 3.0, missed: 0.0, mistaken: 0.0 });
-    // Overlapping: missing the outlier costs less than accepting the foreign shapes.
-    let found = UnknownThreshold::from_distances(&[1.0, 1.0, 1.0, 9.0], &[5.0, 6.0]).unwrap();
-    assert_eq!((found.distance, found.missed, found.mistaken), (3.0, 0.25, 0.0));
-    assert_eq!(UnknownThreshold::from_distances(&[], &[1.0]), None);
-    assert_eq!(UnknownThreshold::from_distances(&[1.0, 2.0], &[]).unwrap().distance, 4.0);
-}
-
-#[test]
 fn near_neighbors_outvote_many_far_ones() {
     let class = |i: usize| usize::from(i > 0);
     let near = neighbors(&[0.1, 0.9, 0.95]);

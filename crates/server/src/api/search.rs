@@ -77,7 +77,8 @@ impl SearchParams {
         let format = self.format.unwrap_or(Format::Json);
         let geometry = format == Format::Json && self.geometry != Some(false);
         let rank_by = self.rank.unwrap_or_default();
-        Ok(Wanted { options: SearchOptions { k, explain, rank_by }, geometry, format })
+        let options = SearchOptions { k, explain, rank_by, ..SearchOptions::default() };
+        Ok(Wanted { options, geometry, format })
     }
 }
 

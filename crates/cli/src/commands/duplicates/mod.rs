@@ -87,7 +87,7 @@ pub(crate) fn duplicates(args: &DuplicatesArgs, common: &Common) -> Result<ExitC
 /// Builds the index of datasets and meshes.
 fn described(args: &DuplicatesArgs, scratch: &Scratch, bars: &Bars) -> Result<PathBuf> {
     let (index, describe) = (scratch.file("all.canonform"), DescribeOptions::default());
-    IndexWriter::build(&index, &describe.text())?.finish(&())?;
+    IndexWriter::build(&index, &describe.text())?.finish()?;
     let paths = [&args.inputs[..], &args.reference].concat();
     let inputs = Inputs {
         paths: &paths,
