@@ -108,17 +108,11 @@ impl Handedness {
                 reversing = reversing.min(gap.rms);
             }
         }
-        Ok(Self::from_maps([preserving, reversing], uncertainty))
-    }
-
-    /// From the root mean square distances of the best maps that preserve and that reverse orientation, infinite if there is
-    /// none.
-    fn from_maps([preserving, reversing]: [f64; 2], uncertainty: f64) -> Self {
-        match preserving.is_finite() || reversing.is_finite() {
+        Ok(match preserving.is_finite() || reversing.is_finite() {
             false => Self::Unknown,
             _ if is_decisive(preserving, reversing, uncertainty) => Self::Same,
             _ if is_decisive(reversing, preserving, uncertainty) => Self::Mirrored,
             _ => Self::Either,
-        }
+        })
     }
 }

@@ -93,28 +93,22 @@ impl Relation {
         let gaps = map.map(|map| {
             [Displacements::from_surface(a, b, &map), Displacements::from_surface(b, a, &map.inverse())]
         });
-        let by_gaps = |is: &dyn Fn([&Displacements; 2]) -> bool| match &gaps {
-            Some([first, second]) => [is([first, second]), is([second, first])],
-            None => [false; 2],
-        };
-        let has_noise = match self.kind {
-            RelationKind::Noisy => [true; 2],
-            _ => by_gaps(&|[own, _]| own.is_noise()),
-        };
         let n_about = (a.n_vertices() as f64 / b.n_vertices() as f64).ln().abs();
         let is_new = n_about < ABOUT && (a.is_mechanical() || b.is_mechanical());
-        let has_lost = by_gaps(&|[own, other]| other.has_more(own));
-        let differ = by_gaps(&|[own, _]| own.rms > ROUNDING).contains(&true);
+        let differ = gaps.iter().flatten().any(|gap| gap.rms > ROUNDING);
         let is_worse = |own: usize| {
             let [mesh, other] = [[a, b][own], [a, b][1 - own]];
             let [needed, needed_by_other] = [mesh, other].map(|mesh| mesh.exactness().n_needed);
+            let gaps = gaps.as_ref().map(|gaps| [&gaps[own], &gaps[1 - own]]);
+            let has_noise = self.kind == RelationKind::Noisy || gaps.is_some_and(|[own, _]| own.is_noise());
+            let has_lost = gaps.is_some_and(|[own, other]| other.has_more(own));
             [
                 (
                     Merit::Smooth,
-                    has_noise[own] && mesh.is_rougher(other) || is_new && mesh.bends_more(STRAIGHT, other),
+                    has_noise && mesh.is_rougher(other) || is_new && mesh.bends_more(STRAIGHT, other),
                 ),
                 (Merit::Closed, !mesh.exactness().is_closed),
-                (Merit::Detailed, has_lost[own] && needed < FINER * needed_by_other),
+                (Merit::Detailed, has_lost && needed < FINER * needed_by_other),
                 // Triangles across a cylinder bend where those along it do not.
                 (
                     Merit::Detailed,

@@ -2,7 +2,6 @@
 
 use mesh::TriMesh;
 use nalgebra::Point3;
-use rigid::TriangleTree;
 
 use super::exact::same_vertices;
 use super::geometry::MeshGeometry;
@@ -46,16 +45,12 @@ impl Relation {
             faces: mesh.faces.clone(),
         };
         let meshes = [laid(a.mesh(), &|p| map.apply(p)), laid(b.mesh(), &|p| *p)];
-        let gaps = [(0, 1), (1, 0)].map(|(from, to)| gaps(&meshes[from], &meshes[to]));
+        let gaps = [(a, b, map, size), (b, a, map.inverse(), a.size())].map(|(from, to, map, size)| {
+            let near = from.mesh().positions.iter().map(|p| to.surface.tree().nearest(&map.apply(p)));
+            near.map(|near| near.map_or(f64::NAN, |near| near.sq_distance.sqrt() * size)).collect()
+        });
         Some(MeshOverlay { meshes, gaps })
     }
-}
-
-/// The distance of every vertex from a surface.
-fn gaps(from: &TriMesh, to: &TriMesh) -> Vec<f64> {
-    let tree = TriangleTree::new(to);
-    let gap = |p: &Point3<f64>| tree.nearest(p).map_or(f64::NAN, |near| near.sq_distance.sqrt());
-    from.positions.iter().map(gap).collect()
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 //! size -> means over regions, beyond their standard errors -> in multiples of what triangles and rounding explain
 //! ```
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashSet};
 
 use mesh::RegionShape;
 use nalgebra::{Point3, Vector3};
@@ -82,7 +82,7 @@ fn contacts(from: &MeshGeometry, to: &MeshGeometry, map: &Similarity, noise: f64
     let regions = to.surface.regions();
     let own_chords = &from.surface.regions().chord_errors;
     let rounding = FLUSH + from.rounding() + to.rounding();
-    let mut found: HashMap<(usize, VertexId), Contact> = HashMap::new();
+    let mut found: BTreeMap<(usize, VertexId), Contact> = BTreeMap::new();
     for f in from.some_faces() {
         let corners = from.mesh().triangle(f).map(|p| map.apply(&p));
         let Some(own) = (corners[1] - corners[0]).cross(&(corners[2] - corners[0])).try_normalize(0.0) else {
@@ -118,8 +118,6 @@ fn contacts(from: &MeshGeometry, to: &MeshGeometry, map: &Similarity, noise: f64
             contact.on.extend(to.mesh().faces[near.face]);
         }
     }
-    let mut found: Vec<_> = found.into_iter().collect();
-    found.sort_by_key(|(key, _)| *key);
     let mean = |((region, _), contact): ((usize, VertexId), Contact)| {
         let Contact { n, normal, offset, allowed, .. } = contact;
         (region, Contact { normal: normal / n, offset: offset / n, allowed: allowed / n, ..contact })
