@@ -43,7 +43,7 @@ pub use landmark::landmark_mds;
 pub use nystrom::{nystrom, nystrom_extended};
 pub use out_of_sample::OutOfSample;
 pub use reconstruction::{Reconstruction, ReconstructionError, low_rank_factor, sample_eigenvalues};
-pub use regularization::{Regularization, RpiAlpha};
+pub use regularization::{Regularization, RpiAlpha, largest_magnitudes};
 pub use row_sample::{RowSample, sample_rows};
 pub use sample_search::{EmbedSamples, SampleSearch, SampleStop, SampleTrial, SamplesReport};
 pub use smacof::{LandmarkPairs, SmacofOptions, SmacofReport, SmacofStop, smacof};

@@ -4,7 +4,7 @@ use linalg::{LandmarkDistances, LinalgError, Matrix, thin_qr};
 use rayon::prelude::*;
 
 use crate::passes::product;
-use crate::regularization::by_magnitude;
+use crate::regularization::largest_magnitudes;
 use crate::squares::{check_extent, check_points};
 use crate::{DistanceRows, NmdsError, Regularization};
 
@@ -141,7 +141,7 @@ fn by_blocks<T: Send>(
 /// [`NmdsError::Linalg`].
 pub fn sample_eigenvalues(distances: &LandmarkDistances) -> Result<Vec<f64>, NmdsError> {
     let unit = if distances.max() > 0.0 { distances.max() } else { 1.0 };
-    let kept = by_magnitude(&(distances.sq_block() / (unit * unit)), distances.n_landmarks())?;
+    let kept = largest_magnitudes(&(distances.sq_block() / (unit * unit)), distances.n_landmarks())?;
     Ok(kept.values.iter().map(|value| value * unit * unit).collect())
 }
 
@@ -164,7 +164,7 @@ pub fn low_rank_factor(distances: &LandmarkDistances, rank: usize) -> Result<(Ma
     let n = distances.n_landmarks();
     let rank = Regularization::LowRank { rank: Some(rank) }.rank(n, 3)?;
     let unit = check_extent(distances.max(), distances.n_points())?;
-    let eigen = by_magnitude(&(distances.sq_block() / (unit * unit)), rank)?;
+    let eigen = largest_magnitudes(&(distances.sq_block() / (unit * unit)), rank)?;
     let (positive, negative): (Vec<_>, Vec<_>) =
         (0..eigen.values.len()).partition(|&i| eigen.values[i] >= 0.0);
     let n_positive = positive.len();

@@ -1,6 +1,6 @@
 //! Regularized inverses of the sample matrix.
 
-use linalg::{LandmarkDistances, Matrix, SymmetricEigen, symmetric_eigen, thin_svd};
+use linalg::{LandmarkDistances, LinalgError, Matrix, SymmetricEigen, symmetric_eigen, thin_svd};
 
 use crate::squares::{check_dim, n_significant};
 use crate::{NmdsError, SampleSearch};
@@ -157,7 +157,7 @@ impl Regularization {
             let reciprocals = values.iter().map(|value| 1.0 / value).collect();
             return Ok(PseudoInverse { basis: Matrix::identity(n, n), factors, values, reciprocals });
         }
-        let SymmetricEigen { values, vectors } = by_magnitude(sq_block, rank)?;
+        let SymmetricEigen { values, vectors } = largest_magnitudes(sq_block, rank)?;
         let sigma_1 = values[0].abs();
         let reciprocal = |value: &f64| match self {
             // Samples coincide, or there is only one.
@@ -213,14 +213,17 @@ impl PseudoInverse {
     }
 }
 
-/// The `rank` eigenpairs of largest magnitude, without those at rounding error; at least one.
-pub(crate) fn by_magnitude(sq_block: &Matrix, rank: usize) -> Result<SymmetricEigen, NmdsError> {
-    let eigen = symmetric_eigen(sq_block)?;
+/// The `rank` eigenpairs of largest magnitude of a symmetric matrix, without those at rounding error; at least one.
+///
+/// # Errors
+/// [`LinalgError::NotConverged`].
+pub fn largest_magnitudes(matrix: &Matrix, rank: usize) -> Result<SymmetricEigen, LinalgError> {
+    let eigen = symmetric_eigen(matrix)?;
     let mut order: Vec<usize> = (0..eigen.values.len()).collect();
     order.sort_by(|&i, &j| eigen.values[j].abs().total_cmp(&eigen.values[i].abs()));
     order.truncate(rank);
     let first = order[0];
-    let floor = sq_block.nrows() as f64 * f64::EPSILON * eigen.values[first].abs();
+    let floor = matrix.nrows() as f64 * f64::EPSILON * eigen.values[first].abs();
     order.retain(|&i| i == first || eigen.values[i].abs() > floor);
     Ok(eigen.select(&order))
 }

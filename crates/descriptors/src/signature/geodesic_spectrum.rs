@@ -1,6 +1,7 @@
 //! The spectrum of square roots of surface distances.
 
-use linalg::{LandmarkDistances, Matrix, symmetric_eigen, symmetric_eigenvalues, triangular_factor};
+use linalg::{LandmarkDistances, Matrix, symmetric_eigenvalues, triangular_factor};
+use nmds::largest_magnitudes;
 
 use super::kind::{Signature, SignatureKind};
 use crate::error::DescriptorError;
@@ -52,9 +53,7 @@ pub fn geodesic_spectrum(
         return Err(DescriptorError::NoExtent { n_points: p });
     }
     let block = distances.sq_block().map(|sq| (sq.sqrt() / unit).sqrt());
-    let eigen = symmetric_eigen(&block)?;
-    let kept = strongest(&eigen.values);
-    let eigen = eigen.select(&kept);
+    let eigen = largest_magnitudes(&block, (block.nrows() / 2).max(7))?;
     let mut columns = distances.to_matrix()?;
     columns.apply(|d| *d = (*d / unit).sqrt());
     let mut columns = columns * &eigen.vectors;
@@ -82,15 +81,4 @@ pub(crate) fn log_magnitudes(mut spectrum: Vec<f64>, n: usize, offset: f64) -> O
         (share * largest).ln() + offset
     };
     Some((0..n).map(value).collect())
-}
-
-/// The half of the eigenvalues of largest magnitude, without those that are rounding errors.
-fn strongest(values: &[f64]) -> Vec<usize> {
-    let n = values.len();
-    let largest = values.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
-    let floor = n as f64 * f64::EPSILON * largest;
-    let mut order: Vec<usize> = (0..n).filter(|&i| values[i].abs() > floor).collect();
-    order.sort_by(|&i, &j| values[j].abs().total_cmp(&values[i].abs()));
-    order.truncate((n / 2).max(7));
-    order
 }
