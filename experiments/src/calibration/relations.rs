@@ -217,7 +217,7 @@ pub(crate) fn beyond_a_plane(mesh: &TriMesh, left: f64) -> TriMesh {
     TriMesh { positions: mesh.positions.clone(), faces }.without_unused_vertices()
 }
 
-/// `experiments relations`: the rows of `crates/relations/src/relation/calibration.rs`, and how often confidence is right about
+/// `experiments relations`: the rows of `crates/relations/src/calibration.rs`, and how often confidence is right about
 /// families that were held out.
 pub(crate) fn relations() -> Result<ExitCode> {
     let bars = Bars::new(false);
