@@ -1,7 +1,7 @@
 //! What a relation is told from.
 
 use base::ContentHash;
-use descriptors::{Boundary, ShapeDistance, ShapeMetric};
+use descriptors::{Boundary, ShapeDistance};
 use rigid::{Gap, Handedness};
 use serde::{Serialize, Serializer};
 
@@ -72,16 +72,6 @@ pub struct Evidence {
     /// The dimensions in which variants of one part differ.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub differences: Vec<Difference>,
-}
-
-impl Evidence {
-    /// The distance of two shapes, and nothing else.
-    pub(super) fn by_distance(distance: ShapeDistance, classes: Option<Boundary>) -> Self {
-        let same_class = classes.unwrap_or(ShapeMetric::SAME_CLASS).probability(distance.combined);
-        // Bodies of one class may be farther apart elsewhere, poses of one body not.
-        let same_shape = distance.same_shape().min(same_class);
-        Self { distance, same_shape, same_class, classes, scale: 1.0, ..Self::default() }
-    }
 }
 
 fn as_text<S: Serializer>(hashes: &[Option<ContentHash>; 2], out: S) -> Result<S::Ok, S::Error> {

@@ -99,8 +99,11 @@ impl Relation {
         handedness: Handedness,
         classes: Option<Boundary>,
     ) -> Self {
-        let mut evidence = Evidence { scale, handedness, ..Evidence::by_distance(distance, classes) };
-        let (same_shape, same_class) = (evidence.same_shape, evidence.same_class);
+        let same_class = classes.unwrap_or(ShapeMetric::SAME_CLASS).probability(distance.combined);
+        // Bodies of one class may be farther apart elsewhere, poses of one body not.
+        let same_shape = distance.same_shape().min(same_class);
+        let mut evidence =
+            Evidence { distance, same_shape, same_class, classes, scale, handedness, ..Evidence::default() };
         let (another_shape, another_class) = (same_class - same_shape, 1.0 - same_class);
         let (kind, confidence, changes) = if same_shape >= another_shape.max(another_class) {
             evidence.units = UnitChange::from_scale(scale, SIZE_OF_SURFACES);
