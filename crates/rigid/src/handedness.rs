@@ -36,10 +36,11 @@ pub(crate) fn is_decisive(better: f64, worse: f64, uncertainty: f64) -> bool {
     worse > (DECISIVE * better).hypot(uncertainty)
 }
 
-/// Points of a surface that encloses a volume, with the faces between them and the share of the surface around each.
+/// Points of a surface that encloses a volume, with the normals there, not normalized, and the share of the surface around each.
 #[derive(Debug)]
 pub struct OrientedPoints<'a> {
-    mesh: TriMesh,
+    points: Vec<Point3<f64>>,
+    normals: Vec<Vector3<f64>>,
     weights: &'a [f64],
 }
 
@@ -47,38 +48,33 @@ impl<'a> OrientedPoints<'a> {
     /// The vertices of `mesh` at other `points`, with its faces turned so that normals point outwards. `None` of a surface that
     /// encloses no volume.
     pub fn new(mesh: &TriMesh, points: Vec<Point3<f64>>, weights: &'a [f64]) -> Option<Self> {
-        Some(Self { mesh: TriMesh { positions: points, ..outward(mesh)? }, weights })
+        let mesh = TriMesh { positions: points, ..outward(mesh)? };
+        let mut normals = vec![Vector3::zeros(); mesh.n_vertices()];
+        for (f, face) in mesh.faces.iter().enumerate() {
+            let normal = mesh.area_vector(f);
+            face.iter().for_each(|v| normals[v.index()] += normal);
+        }
+        Some(Self { points: mesh.positions, normals, weights })
     }
 
-    /// How far the outsides of two bodies agree under a motion of the first onto the second: the mean cosine between
-    /// normals at nearest points, weighted by area, from -1 to 1. `others` are the normals of the second.
+    /// How far the outsides of two bodies agree under a motion of this one onto the other: the mean cosine between
+    /// normals at nearest points, weighted by area, from -1 to 1.
     ///
     /// Faces move with their points, so a motion with a reflection reverses normals: this tests whether the map from
     /// surface to surface preserves orientation, not whether the motion does.
-    fn agreement(&self, nearest: &NearestPoints, others: &[Vector3<f64>], motion: &Similarity) -> f64 {
-        let positions = self.mesh.positions.iter().map(|p| motion.apply(p)).collect();
-        let moved = TriMesh { positions, faces: self.mesh.faces.clone() };
+    fn agreement(&self, other: &Self, nearest: &NearestPoints, motion: &Similarity) -> f64 {
+        let turn = if motion.reflected { -motion.rotation } else { motion.rotation };
         let (mut sum, mut total) = (0.0, 0.0);
-        for ((point, weight), normal) in moved.positions.iter().zip(self.weights).zip(normals(&moved)) {
-            let other = others[nearest.nearest(point).0];
-            let lengths = normal.norm() * other.norm();
+        for ((point, normal), weight) in self.points.iter().zip(&self.normals).zip(self.weights) {
+            let there = other.normals[nearest.nearest(&motion.apply(point)).0];
+            let lengths = normal.norm() * there.norm();
             if lengths > 0.0 {
-                sum += weight * normal.dot(&other) / lengths;
+                sum += weight * (turn * normal).dot(&there) / lengths;
                 total += weight;
             }
         }
         if total > 0.0 { sum / total } else { 0.0 }
     }
-}
-
-/// Normals at the vertices, not normalized.
-fn normals(mesh: &TriMesh) -> Vec<Vector3<f64>> {
-    let mut normals = vec![Vector3::zeros(); mesh.n_vertices()];
-    for (f, face) in mesh.faces.iter().enumerate() {
-        let normal = mesh.area_vector(f);
-        face.iter().for_each(|v| normals[v.index()] += normal);
-    }
-    normals
 }
 
 impl Handedness {
@@ -97,11 +93,11 @@ impl Handedness {
         [a, b]: [&OrientedPoints<'_>; 2],
         uncertainty: f64,
     ) -> Result<Self, NoExtent> {
-        let (nearest, others) = (NearestPoints::new(b.mesh.positions.clone())?, normals(&b.mesh));
+        let nearest = NearestPoints::new(b.points.clone())?;
         // The least distance of a map that preserves, and of one that reverses orientation.
         let (mut preserving, mut reversing) = (f64::INFINITY, f64::INFINITY);
         for Alignment { map, gap } in alignments {
-            let agreement = a.agreement(&nearest, &others, &map);
+            let agreement = a.agreement(b, &nearest, &map);
             if agreement > AGREEMENT {
                 preserving = preserving.min(gap.rms);
             } else if agreement < -AGREEMENT {
