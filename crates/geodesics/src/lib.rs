@@ -59,6 +59,6 @@ pub use method::Method;
 pub use observed::Observed;
 pub use path::{GeodesicPath, PathTracer};
 pub use sampling::{FirstSample, Sampler, Sampling, SpreadSamples, farthest_point_sampling};
-pub use solver::{DistanceSolver, PrunedSolver};
+pub use solver::DistanceSolver;
 pub use source::Source;
 pub use surface::SurfacePoint;

@@ -4,7 +4,7 @@ use base::{Budget, Exceeded, Observer};
 use linalg::Matrix;
 use surface::VertexId;
 
-use crate::solver::{DistanceSolver, PrunedSolver};
+use crate::solver::DistanceSolver;
 use crate::source::Source;
 
 /// Sources solved between two reports of progress.
@@ -52,7 +52,11 @@ impl DistanceSolver for Observed<'_> {
         Ok(columns)
     }
 
-    fn pruned(&self) -> Option<&dyn PrunedSolver> {
-        self.solver.pruned()
+    fn prunes(&self) -> bool {
+        self.solver.prunes()
+    }
+
+    fn lower(&self, source: VertexId, nearest: &mut [f64]) -> Result<(), Exceeded> {
+        self.solver.lower(source, nearest)
     }
 }

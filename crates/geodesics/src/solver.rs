@@ -73,9 +73,23 @@ pub trait DistanceSolver: Send + Sync + std::fmt::Debug {
         Ok(out)
     }
 
-    /// The same solver with pruning, if it can prune.
-    fn pruned(&self) -> Option<&dyn PrunedSolver> {
-        None
+    /// Whether [`lower`](Self::lower) only visits the part nearest to the new source.
+    fn prunes(&self) -> bool {
+        false
+    }
+
+    /// Lowers `nearest`, distances to the nearest of some sources, to the distance from `source` where it is less.
+    ///
+    /// # Errors
+    /// [`Exceeded`]; then `nearest` may be changed in part.
+    ///
+    /// # Panics
+    /// If `nearest` does not have one entry per vertex, or `source` is out of range.
+    fn lower(&self, source: VertexId, nearest: &mut [f64]) -> Result<(), Exceeded> {
+        let distances = self.distances(source)?;
+        assert_eq!(distances.len(), nearest.len(), "one distance per vertex");
+        nearest.iter_mut().zip(distances).for_each(|(near, distance)| *near = near.min(distance));
+        Ok(())
     }
 
     /// The distances from several vertices, `n_vertices` x `sources.len()`, computed in parallel; the result does not
@@ -104,19 +118,6 @@ pub trait DistanceSolver: Send + Sync + std::fmt::Debug {
         let all: Vec<VertexId> = (0..self.n_vertices()).map(VertexId::from).collect();
         Ok(DistanceMatrix::from_rows(all.len(), self.distance_columns(&all)?.data.into())?)
     }
-}
-
-/// A solver whose front can stop where another source is nearer, so that it only visits the part nearest to the new
-/// source.
-pub trait PrunedSolver: Sync + std::fmt::Debug {
-    /// Lowers `nearest`, distances to the nearest of some sources, to the distance from `source` where it is less.
-    ///
-    /// # Errors
-    /// [`Exceeded`]; then `nearest` may be changed in part.
-    ///
-    /// # Panics
-    /// If `nearest` does not have one entry per vertex, or `source` is out of range.
-    fn lower(&self, source: VertexId, nearest: &mut [f64]) -> Result<(), Exceeded>;
 }
 
 /// The distance, or infinity beyond the limit, where fronts leave tentative distances.

@@ -3,8 +3,8 @@
 use canonform::Exceeded;
 use datasets::Family;
 use geodesics::{
-    DistanceSolver, FastMarching, FastMarchingOptions, FirstSample, Method, ObtuseTreatment, PrunedSolver,
-    Source, SurfacePoint, Update, farthest_point_sampling,
+    DistanceSolver, FastMarching, FastMarchingOptions, FirstSample, Method, ObtuseTreatment, Source,
+    SurfacePoint, Update, farthest_point_sampling,
 };
 use mesh::{TriMesh, shapes};
 use nalgebra::Point3;
@@ -144,12 +144,10 @@ impl DistanceSolver for Other<'_> {
         self.solver.solve_into(sources, max_distance, out)
     }
 
-    fn pruned(&self) -> Option<&dyn PrunedSolver> {
-        self.is_careless.then_some(self as &dyn PrunedSolver)
+    fn prunes(&self) -> bool {
+        self.is_careless
     }
-}
 
-impl PrunedSolver for Other<'_> {
     fn lower(&self, source: VertexId, nearest: &mut [f64]) -> Result<(), Exceeded> {
         for (near, distance) in nearest.iter_mut().zip(self.solver.distances(source)?) {
             if distance < 0.5 * *near {

@@ -7,7 +7,7 @@ use std::str::FromStr;
 use std::time::Instant;
 
 use base::{Budget, Exceeded};
-use geodesics::{DistanceSolver, FirstSample, PrunedSolver, Sampler, Sampling, Source};
+use geodesics::{DistanceSolver, FirstSample, Sampler, Sampling, Source};
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
 use nmds::{EmbedSamples, SampleSearch};
 use surface::VertexId;
@@ -206,7 +206,11 @@ impl DistanceSolver for KnownColumns<'_> {
         }
     }
 
-    fn pruned(&self) -> Option<&dyn PrunedSolver> {
-        self.solver.pruned()
+    fn prunes(&self) -> bool {
+        self.solver.prunes()
+    }
+
+    fn lower(&self, source: VertexId, nearest: &mut [f64]) -> Result<(), Exceeded> {
+        self.solver.lower(source, nearest)
     }
 }

@@ -50,7 +50,7 @@ use base::{Budget, Exceeded, Observer};
 use surface::{IntrinsicMesh, Loops, Rows, Triangulation, VertexId};
 
 use crate::order::patches_of;
-use crate::solver::{DistanceSolver, Pool, PrunedSolver, within};
+use crate::solver::{DistanceSolver, Pool, within};
 use crate::source::Source;
 use front::TriangleFront;
 use planar::PlanarFront;
@@ -267,12 +267,10 @@ impl DistanceSolver for FastMarching {
         self.run(sources, stops, |v, distance| out[v as usize] = within(distance, max_distance))
     }
 
-    fn pruned(&self) -> Option<&dyn PrunedSolver> {
-        Some(self)
+    fn prunes(&self) -> bool {
+        true
     }
-}
 
-impl PrunedSolver for FastMarching {
     fn lower(&self, source: VertexId, nearest: &mut [f64]) -> Result<(), Exceeded> {
         assert_eq!(nearest.len(), self.n_vertices(), "one distance per vertex");
         let nearest = Cell::from_mut(nearest).as_slice_of_cells();

@@ -9,7 +9,7 @@ use surface::{VertexId, unit_for};
 
 use super::{FirstSample, Sampling};
 use crate::error::GeodesicError;
-use crate::solver::{DistanceSolver, PrunedSolver};
+use crate::solver::DistanceSolver;
 
 /// Most columns that are measured at once: some solvers take many sources at once faster than one by one.
 const BATCH: usize = 64;
@@ -151,10 +151,8 @@ impl Sampler<'_> {
     pub fn extend_to(&mut self, n: usize) -> Result<(), GeodesicError> {
         let n = n.min(self.solver.n_vertices());
         self.store.reserve(n.saturating_sub(self.landmarks.len()), &self.solver.budget())?;
-        if rayon::current_num_threads() > 1
-            && let Some(pruned) = self.solver.pruned()
-        {
-            self.extend_pruned(pruned, n)?;
+        if rayon::current_num_threads() > 1 && self.solver.prunes() {
+            self.extend_pruned(n)?;
         }
         while self.landmarks.len() < n {
             let next = self.rule.next(self.landmarks.len(), n);
@@ -190,7 +188,7 @@ impl Sampler<'_> {
     ///
     /// Distances may be too long where a pruned front stopped. So the choices are checked once all distances are
     /// known, and kept up to the first that is not the farthest vertex.
-    fn extend_pruned(&mut self, pruned: &dyn PrunedSolver, n: usize) -> Result<(), GeodesicError> {
+    fn extend_pruned(&mut self, n: usize) -> Result<(), GeodesicError> {
         let Self { solver, rule: Rule::Farthest { nearest: known }, landmarks, store } = self else {
             return Ok(());
         };
@@ -215,7 +213,7 @@ impl Sampler<'_> {
                 let source = VertexId::from(next);
                 scope.spawn(move |_| note(slot.fill(|column| solver.distances_into(source, column))));
                 if unknown.peek().is_some() {
-                    note(pruned.lower(source, &mut nearest).map_err(Into::into));
+                    note(solver.lower(source, &mut nearest).map_err(Into::into));
                 }
             }
         });

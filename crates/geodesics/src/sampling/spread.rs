@@ -20,7 +20,7 @@ impl SpreadSamples {
     /// Continues farthest point sampling from some landmarks up to `n` samples, without keeping their distances; fewer if
     /// every vertex coincides with one, and never fewer than the landmarks.
     ///
-    /// Cost: much less than a run of the solver for each sample if the solver can [prune](DistanceSolver::pruned), since a
+    /// Cost: much less than a run of the solver for each sample if the solver can [prune](DistanceSolver::prunes), since a
     /// front then stops where other samples are nearer; and `O(p n)`.
     ///
     /// ```
@@ -62,14 +62,8 @@ impl SpreadSamples {
             if gaps[next] == 0.0 {
                 break;
             }
-            let source = VertexId::from(next);
-            match solver.pruned() {
-                Some(pruned) => {
-                    lowered.copy_from_slice(&gaps);
-                    pruned.lower(source, &mut lowered)?;
-                }
-                None => solver.distances_into(source, &mut lowered)?,
-            }
+            lowered.copy_from_slice(&gaps);
+            solver.lower(VertexId::from(next), &mut lowered)?;
             lower(&mut gaps, &lowered, samples.len());
             samples.push(next);
         }
