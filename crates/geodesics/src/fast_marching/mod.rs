@@ -228,7 +228,7 @@ impl FastMarching {
             LocalSolver::VirtualSource(scratch) => scratch.with(|front| {
                 front.run(triangles, sources, &self.budget, |number, distance| {
                     let longest = || unit * triangles.longest_of(number);
-                    triangles.mesh_vertices(number).into_iter().all(|v| stops(v, unit * distance, &longest))
+                    triangles.mesh_vertices(number).all(|v| stops(v, unit * distance, &longest))
                 })?;
                 numbers.for_each(|(internal, v)| found(*v, unit * front.distance(internal)));
                 Ok(())

@@ -318,8 +318,8 @@ impl Triangles {
     }
 
     /// The mesh vertices of a triangle.
-    pub(crate) fn mesh_vertices(&self, triangle: FaceId) -> [u32; 3] {
-        self.at(triangle).vertices().map(|v| self.order[v.index()])
+    pub(crate) fn mesh_vertices(&self, triangle: FaceId) -> impl Iterator<Item = u32> {
+        self.at(triangle).vertices().into_iter().map(|v| self.order[v.index()])
     }
 
     #[inline]
