@@ -37,7 +37,7 @@ pub use ids::{CornerId, EdgeId, FaceId, VertexId};
 pub use intrinsic::{IntrinsicMesh, Link, power_of_two_below, unit_for};
 pub use loops::{SurfaceLoop, short_loops};
 pub use nearest_first::NearestFirst;
-pub use one_ring::{AngleSum, Fan, FanCorner, OneRing, VertexKind, Winding};
+pub use one_ring::{Fan, FanCorner, OneRing, VertexKind, Winding};
 pub use point::SurfacePoint;
 pub use rows::Rows;
 pub use topology::Topology;

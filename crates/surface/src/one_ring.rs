@@ -208,54 +208,8 @@ impl OneRing {
     }
 }
 
-/// A sum of angles, as half turns and a direction in the upper half plane: each angle rotates the direction, and the
-/// half turns are counted, so that at most one arc tangent is needed.
-#[derive(Debug, Clone, Copy)]
-pub struct AngleSum {
-    x: f64,
-    y: f64,
-    half_turns: f64,
-}
-
-impl Default for AngleSum {
-    fn default() -> Self {
-        Self { x: 1.0, y: 0.0, half_turns: 0.0 }
-    }
-}
-
-impl AngleSum {
-    /// Adds an angle of at most 180 degrees, given by its sine and cosine times any positive factor; skips a pair of
-    /// zeros.
-    #[inline]
-    pub fn add(&mut self, [sin, cos]: [f64; 2]) {
-        /// Beyond this size, or below its inverse, the direction is scaled.
-        const LARGE: f64 = 1e60;
-        if sin == 0.0 && cos == 0.0 {
-            return;
-        }
-        let (mut x, mut y) = (self.x * cos - self.y * sin, self.x * sin + self.y * cos);
-        let size = f64::max(x.abs(), y.abs());
-        if !(1.0 / LARGE..LARGE).contains(&size) {
-            (x, y) = (x / size, y / size);
-        }
-        // Without a branch, which could not be predicted.
-        let is_below = (y < 0.0) | ((y == 0.0) & (x < 0.0));
-        let sign = if is_below { -1.0 } else { 1.0 };
-        (self.x, self.y) = (sign * x, sign * y);
-        self.half_turns += f64::from(u8::from(is_below));
-    }
-
-    /// Whether the sum exceeds a number of half turns by more than a small angle, given by its tangent.
-    pub fn exceeds(self, half_turns: u8, excess: f64) -> bool {
-        let by = self.half_turns - f64::from(half_turns);
-        by > 0.0 || (by == 0.0 && (self.x <= 0.0 || self.y > excess * self.x))
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
-
     use super::*;
 
     /// The fans around vertex 0: the vertices at the ends of the sides, in order.
@@ -297,36 +251,5 @@ mod tests {
         assert!(ring.fans().all(|fan| fan.is_closed));
         let (ring, ends) = fans(&[[1, 2, 3]]);
         assert_eq!((ring.kind(0.0, 0.0), ends.len()), (VertexKind::Ordinary, 0));
-    }
-
-    fn sum(angles: impl Iterator<Item = [f64; 2]>) -> AngleSum {
-        let mut sum = AngleSum::default();
-        angles.for_each(|angle| sum.add(angle));
-        sum
-    }
-
-    fn radians(sum: AngleSum) -> f64 {
-        sum.half_turns * PI + sum.y.atan2(sum.x)
-    }
-
-    #[test]
-    fn angles_add_up_beyond_any_number_of_turns() {
-        for angle in [0.0, 1e-9, 1.0, FRAC_PI_2, 2.5, 3.0, PI] {
-            for n in [1, 2, 3, 4, 7, 40] {
-                // The product of these factors overflows.
-                let sizes = (0..n).map(|i| [1e200, 1e-200][i % 2]);
-                let found = sum(sizes.map(|size: f64| [size * angle.sin(), size * angle.cos()]));
-                let expected = n as f64 * angle;
-                let gap = (radians(found) - expected).abs();
-                assert!(gap < 1e-13 * (1.0 + expected), "{n} times {angle}: {found:?}");
-                for half_turns in 0..5 {
-                    let by = expected - f64::from(half_turns) * PI;
-                    if (by - 1e-9).abs() > 1e-12 {
-                        assert_eq!(found.exceeds(half_turns, 1e-9), by > 1e-9, "{n} times {angle}");
-                    }
-                }
-            }
-        }
-        assert_eq!(radians(sum([[0.0, 0.0], [1.0, 1.0], [0.0, 0.0]].into_iter())), FRAC_PI_4);
     }
 }

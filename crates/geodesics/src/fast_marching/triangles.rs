@@ -1,11 +1,12 @@
 //! Triangles, laid out in the order in which the front reads them.
 
 use std::collections::HashMap;
+use std::f64::consts::{PI, TAU};
 
 use rayon::prelude::*;
 use surface::{
-    AngleSum, CornerId, EdgeGraph, FaceId, GluedTriangle, Link, Rows, Triangulation, VertexId,
-    scalar_product, twice_area,
+    CornerId, EdgeGraph, FaceId, GluedTriangle, Link, Rows, Triangulation, VertexId, scalar_product,
+    twice_area,
 };
 
 use super::window::{COLLINEAR, SourceWindow};
@@ -225,11 +226,11 @@ fn kinds(triangles: &[MarchTriangle], corners: &Rows<CornerId>) -> Vec<[bool; 2]
         across(*side) == *side || (at(*side).is_irregular() && across(across(*side)) != *side)
     };
     let kind = |v: usize| {
-        let (mut angle, mut n_free) = (AngleSum::default(), 0);
+        let (mut angle, mut n_free) = (0.0, 0);
         for corner in corners.row(v) {
             n_free += [corner.next(), corner.prev()].iter().filter(|side| is_free(side)).count();
             let [opposite, p, q] = [0, 1, 2].map(|step| at(*corner).lengths[(corner.slot() + step) % 3]);
-            angle.add([areas[corner.face().index()], scalar_product(opposite, p, q)]);
+            angle += areas[corner.face().index()].atan2(scalar_product(opposite, p, q));
         }
         let first = corners.row(v).first().filter(|_| n_free == 0);
         let is_inside = first.is_some_and(|first| {
@@ -246,7 +247,7 @@ fn kinds(triangles: &[MarchTriangle], corners: &Rows<CornerId>) -> Vec<[bool; 2]
             }
         });
         let has_fans = n_free > 2 || (first.is_some() && !is_inside);
-        [angle.exceeds(if is_inside { 2 } else { 1 }, EXCESS), has_fans]
+        [angle > EXCESS + if is_inside { TAU } else { PI }, has_fans]
     };
     (0..corners.n_rows()).into_par_iter().map(kind).collect()
 }
