@@ -51,7 +51,8 @@ impl Dijkstra {
     pub fn of_hops(mesh: &IntrinsicMesh, observer: &dyn Observer) -> Self {
         let ends = mesh.topology().edges().iter().copied().chain(mesh.links().iter().map(|link| link.ends));
         let graph = EdgeGraph::new(mesh.n_vertices(), ends.map(|ends| Link { ends, length: 1.0 }));
-        Self { graph, hop: Some(mesh.mean_edge_length()), ..Self::new(mesh, observer) }
+        let (hop, budget) = (Some(mesh.mean_edge_length()), observer.budget());
+        Self { graph, hop, scratch: Pool::default(), budget }
     }
 }
 
