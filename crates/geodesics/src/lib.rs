@@ -5,7 +5,7 @@
 //! * A [`Method`] names a solver; [`Method::prepare`] makes a [`DistanceSolver`] for one surface. The solvers are
 //!   [`FastMarching`] (the default), [`Exact`], [`HeatMethod`] and [`Dijkstra`], along edges or in [hops](Dijkstra::of_hops).
 //! * A [`Source`] is a vertex, or any [`SurfacePoint`].
-//! * A [`PathTracer`] finds shortest paths with the distances of any solver; [`log_map`] unrolls the surface about a point.
+//! * A [`PathTracer`] finds shortest paths with exact distances; [`log_map`] unrolls the surface about a point.
 //! * A [`Sampling`] names a choice of landmarks; [`Sampling::start`] makes a [`Sampler`].
 //! * A solver keeps to the budget of the observer it is prepared with; [`Observed`] tells an observer of every solve.
 //!
@@ -23,7 +23,8 @@
 //! // Distances from one vertex to all, and the shortest path to one of them.
 //! let distances = solver.distances(VertexId(0))?;
 //! let sources = [Source::vertex(VertexId(0))];
-//! let path = PathTracer::new(&surface, &sources, &distances, &()).path_to(SurfacePoint::Vertex(VertexId(330)))?;
+//! let exact = Method::Exact.prepare(&surface, &())?.distances(VertexId(0))?;
+//! let path = PathTracer::new(&surface, &sources, &exact, &()).path_to(SurfacePoint::Vertex(VertexId(330)))?;
 //! assert!((path.length / distances[330] - 1.0).abs() < 0.05);
 //!
 //! // Ten landmarks spread over the surface, with their distances to all vertices.
@@ -37,6 +38,7 @@ mod dijkstra;
 mod error;
 mod exact;
 mod fast_marching;
+mod flat;
 mod heat;
 mod method;
 mod observed;
@@ -45,6 +47,7 @@ mod path;
 mod plane;
 mod prefetch;
 mod sampling;
+mod sight;
 mod solver;
 mod source;
 #[cfg(test)]

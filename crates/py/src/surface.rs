@@ -355,11 +355,9 @@ impl Surface {
         py: Python<'py>,
         source: &Bound<'py, PyAny>,
         targets: &Bound<'py, PyAny>,
-        geodesic: Settings,
     ) -> PyResult<Vec<FoundPath<'py>>> {
-        let method = geodesic.distances()?;
         let (source, targets) = ([point_of(source)?], points_of(targets)?);
-        let paths = self.solve(py, method, |solver, _| {
+        let paths = self.solve(py, Method::Exact, |solver, _| {
             let inner = &self.inner;
             targets.iter().try_for_each(|target| inner.locate(target).map(drop))?;
             let sources = self.sources(&source)?;

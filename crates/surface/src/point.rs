@@ -23,17 +23,20 @@ pub enum SurfacePoint {
     },
 }
 
+/// Positions and coordinates below this are rounding: the point lies on the edge, or is its end.
+const ROUNDING: f64 = 1e-12;
+
 impl SurfacePoint {
     #[must_use]
-    /// The same point as a vertex if it is one, else as a point of an edge if it is on one.
+    /// The same point as a vertex if it is one, else as a point of an edge if it is on one, up to rounding.
     pub fn simplified(self, mesh: &IntrinsicMesh) -> Self {
         let topology = mesh.topology();
         match self {
-            Self::Edge { edge, t } if t <= 0.0 || t >= 1.0 => {
-                Self::Vertex(topology.edges()[edge.index()][usize::from(t >= 1.0)])
+            Self::Edge { edge, t } if t < ROUNDING || t > 1.0 - ROUNDING => {
+                Self::Vertex(topology.edges()[edge.index()][usize::from(t > 0.5)])
             }
             Self::Face { face, barycentric } => {
-                let zero = face.corners().into_iter().find(|corner| barycentric[corner.slot()] <= 0.0);
+                let zero = face.corners().into_iter().find(|corner| barycentric[corner.slot()] < ROUNDING);
                 let Some(corner) = zero else { return self };
                 let edge = topology.opposite_edge(corner);
                 let higher = topology.corner_at(face, topology.edges()[edge.index()][1]);

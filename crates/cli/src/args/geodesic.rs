@@ -23,7 +23,7 @@ Distances are infinite (inf) at vertices that the repair dropped and beyond --ma
 Examples:
   canonform geodesic cat.off --source 0,17 -o rows.npy
   canonform geodesic cat.off --source 0,f8 --nearest --max-distance 5 -o near.ply
-  canonform geodesic cat.off --source 0 --path-to 17,42 --method exact -o paths.obj
+  canonform geodesic cat.off --source 0 --path-to 17,42 -o paths.obj
   canonform geodesic cat.off --all-pairs --memory 2G -o pairs.npy
   canonform geodesic - --format off --source 0 -o - --output-format csv < cat.off";
 
@@ -52,7 +52,7 @@ pub(crate) struct GeodesicArgs {
     #[arg(long, value_name = "D", value_parser = parse_distance)]
     pub(crate) max_distance: Option<f64>,
     /// Write shortest paths to these points instead of distances: from every source, or with --nearest from the nearest
-    /// one. Only --method exact guarantees that they are shortest
+    /// one. They are shortest whatever the method
     #[arg(long, value_delimiter = ',', value_name = "POINT[,POINT...]")]
     pub(crate) path_to: Vec<InputPoint>,
     /// Write the distances between all pairs of vertices (vertices x vertices, symmetric: the average of both

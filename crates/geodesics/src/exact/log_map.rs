@@ -6,7 +6,6 @@ use surface::{IntrinsicMesh, SurfacePoint};
 use super::bearing::Direction;
 use super::prepared::PreparedSurface;
 use super::propagation::{self, ExactScratch};
-use super::pseudo_sources::ON_EDGE;
 use super::tangent_plane::TangentPlane;
 use crate::error::GeodesicError;
 use crate::source::Source;
@@ -40,15 +39,11 @@ use crate::source::Source;
 /// ```
 pub fn log_map(
     mesh: &IntrinsicMesh,
-    mut point: SurfacePoint,
+    point: SurfacePoint,
     max_distance: f64,
     observer: &dyn Observer,
 ) -> Result<Vec<[f64; 2]>, GeodesicError> {
-    Source::new(mesh, point)?;
-    if let SurfacePoint::Face { barycentric, .. } = &mut point {
-        barycentric.iter_mut().filter(|share| **share < ON_EDGE).for_each(|share| *share = 0.0);
-    }
-    let source = Source::new(mesh, point.simplified(mesh))?;
+    let source = Source::new(mesh, point)?;
     let surface = PreparedSurface::new(mesh);
     let plane = TangentPlane::at(mesh, source.point()).renumbered(&surface);
     let mut scratch = ExactScratch::<Direction>::default();

@@ -8,9 +8,6 @@ use super::prepared::{Along, Arrival, FaceFrame, FanSector, PreparedSurface, nex
 use super::window::PathWindow;
 use crate::source::Source;
 
-/// Barycentric coordinates below this are rounding: the point lies on the edge.
-pub(super) const ON_EDGE: f64 = 1e-12;
-
 /// Emits windows into a front.
 #[derive(Debug)]
 pub(super) struct Emission<'a, D: Bearing> {
@@ -47,13 +44,7 @@ impl<D: Bearing> Emission<'_, D> {
                 // A face that repeats another may have its corners in another order.
                 let slot_of = |v: u32| source.reach().iter().position(|(w, _)| new(*w) == v);
                 let shares = vertices.map(|v| slot_of(v).map_or(0.0, |slot| barycentric[slot]));
-                match shares.iter().position(|share| *share < ON_EDGE) {
-                    None => self.start_in_face(face, shares),
-                    Some(slot) => {
-                        let [a, b] = [next(slot), next(next(slot))];
-                        self.start_on_edge([vertices[a], vertices[b]], [shares[a], shares[b]]);
-                    }
-                }
+                self.start_in_face(face, shares);
             }
         }
     }
@@ -84,7 +75,7 @@ impl<D: Bearing> Emission<'_, D> {
             let distance = (x - source[0]).hypot(height - source[1]);
             let apex = frame.vertices[2];
             self.front.reach(apex, distance, Arrival::Anywhere, D::default().along_edge(self.around, apex));
-            if at >= ON_EDGE {
+            if at > 0.0 {
                 let [x, depth] = source;
                 let bearing = D::default().emitted(self.around, corner, &frame);
                 let window =

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use surface::{CornerId, EdgeId, FaceId, IntrinsicMesh, OneRing, SurfacePoint, VertexId, Winding};
 
 use super::prepared::PreparedSurface;
-use crate::path::Flat;
+use crate::flat::Flat;
 use crate::plane::{PlanePoint, sub};
 
 /// The faces around a point, unrolled into the plane that touches there.

@@ -1,25 +1,23 @@
 //! The front: the window of every triangle that waits, and the distances of triangles and vertices.
 
+use std::collections::BTreeMap;
+
 use base::{Budget, Exceeded};
-use surface::{CornerId, FaceId, NearestFirst, VertexId};
+use surface::{CornerId, FaceId, NearestFirst, SurfacePoint, VertexId};
 
 use super::crossing::{Crossing, Crossings};
 use super::queue::{Buckets, Labels, NOWHERE};
 use super::triangles::{MarchTriangle, Triangles, around};
 use super::window::{ROUNDING, SourceWindow};
-use crate::plane::{self, PlanePoint};
+use crate::plane;
 use crate::prefetch::prefetch;
-use crate::source::Source;
+use crate::source::{Source, point_within};
 
 /// Limit of the mean number of visits per triangle. Real surfaces need one or two.
 const VISITS_PER_TRIANGLE: usize = 64;
 
 /// A front that was stopped looks at all triangles only if it knows more than one in so many. It affects time only.
 const FEW: usize = 16;
-
-/// Three distances from a point are those of one point if its position from two of them agrees with the third to this
-/// share of the longest side, which leaves room for rounding in flat triangles.
-const SAME_POINT: f64 = 1e-9;
 
 /// The distances of two vertices may differ by the length of an edge times this: rounding.
 const SLACK: f64 = 1.0 + 1e-12;
@@ -92,38 +90,31 @@ impl TriangleFront {
 
     /// Starts from a source.
     fn start(&mut self, triangles: &Triangles, source: &Source) {
-        let reach = source.reach();
-        for (vertex, distance) in reach {
-            let known = &mut self.vertices[triangles.number(*vertex).index()];
-            *known = known.min(*distance);
-        }
-        let known = |vertex: VertexId| {
-            let vertex = triangles.order[vertex.index()];
-            reach.iter().find(|(v, _)| v.0 == vertex).map(|(_, distance)| *distance)
-        };
-        for (vertex, distance) in reach {
+        for (vertex, distance) in source.reach() {
             let vertex = triangles.number(*vertex);
-            if reach.len() > 1 {
-                self.start_inside(triangles, vertex, known);
-            }
+            let known = &mut self.vertices[vertex.index()];
+            *known = known.min(*distance);
             for corner in triangles.corners.row(vertex.index()) {
                 self.start_at(triangles, *corner, *distance, |_, _| false);
             }
         }
+        if !matches!(source.point(), SurfacePoint::Vertex(_)) {
+            self.start_inside(triangles, source);
+        }
     }
 
-    /// Starts from a point inside those triangles at a vertex all of whose vertices are at a known straight distance.
-    fn start_inside(
-        &mut self,
-        triangles: &Triangles,
-        vertex: VertexId,
-        straight: impl Fn(VertexId) -> Option<f64>,
-    ) {
-        for number in triangles.corners.row(vertex.index()).iter().map(|corner| corner.face()) {
+    /// Starts from a point inside the triangles that hold it.
+    fn start_inside(&mut self, triangles: &Triangles, source: &Source) {
+        let seen: BTreeMap<VertexId, f64> =
+            source.seen().iter().map(|(vertex, length)| (triangles.number(*vertex), *length)).collect();
+        // Every triangle once.
+        let around = seen.keys().flat_map(|vertex| triangles.corners.row(vertex.index()));
+        for number in around.filter(|corner| corner.slot() == 0).map(|corner| corner.face()) {
             let triangle = triangles.at(number);
-            let [Some(a), Some(b), Some(c)] = triangle.vertices().map(&straight) else { continue };
-            let Some(source) = located(triangle, [a, b, c], SAME_POINT * triangles.longest) else { continue };
-            let window = SourceWindow::around(source, 0.0);
+            let [Some(a), Some(b), Some(c)] = triangle.vertices().map(|v| seen.get(&v)) else { continue };
+            let (base, [x, y]) = (triangle.base(), triangle.apex);
+            let Some([_, second, third]) = point_within([base, x, y], [*a, *b, *c]) else { continue };
+            let window = SourceWindow::around([second * base + third * x, third * y], 0.0);
             let distance = window.distance(triangle.centroid());
             self.offers.push(WindowOffer { triangle: number, entry: INSIDE, distance, window });
         }
@@ -484,13 +475,4 @@ impl TriangleFront {
 #[inline(always)]
 fn improves(distance: f64, known: f64) -> bool {
     distance < known * (1.0 - ROUNDING)
-}
-
-/// The point in the plane of a triangle at the given distances from its corners; none if no point is, up to a slack.
-fn located(triangle: &MarchTriangle, distances: [f64; 3], slack: f64) -> Option<PlanePoint> {
-    let [start, end, apex] = triangle.corners();
-    let at =
-        plane::beyond([start, end], [triangle.base(), distances[0], distances[1]], plane::GateSide::Ahead);
-    let error = plane::distance(at, apex) - distances[2];
-    (error.abs() <= slack).then_some(at)
 }

@@ -1,35 +1,28 @@
 //! Paths along edges, as a fallback.
 
-use surface::{EdgeGraph, EdgeId, FaceId, Frontier, IntrinsicMesh, VertexId};
+use surface::{EdgeGraph, Frontier, IntrinsicMesh, SurfacePoint, VertexId};
 
-use super::field::PathField;
-use super::plane::faces_around;
-use super::strip::{PathSection, Strip, StripPath};
+use super::Step;
 use crate::source::Source;
-use surface::SurfacePoint;
 
 /// The shortest paths along edges from the sources to all vertices.
 #[derive(Debug)]
 pub(super) struct EdgeTree {
     pub(super) distances: Vec<f64>,
-    /// The node and the section before every vertex on its path from the source.
-    before: Vec<Option<(SurfacePoint, PathSection)>>,
+    /// The step from every vertex towards the source; to the vertex itself if it is one.
+    towards: Vec<Option<Step>>,
 }
 
 impl EdgeTree {
     /// Cost: `O(p log p)`.
-    pub(super) fn new(field: &PathField) -> Self {
-        let (mesh, n) = (field.mesh, field.mesh.n_vertices());
+    pub(super) fn new(mesh: &IntrinsicMesh, sources: &[Source]) -> Self {
         let (graph, mut front) = (EdgeGraph::of(mesh), Frontier::default());
-        front.reset(n);
-        let mut before = vec![None; n];
-        for source in field.sources {
-            let point = source.point().simplified(mesh);
-            for (vertex, distance) in source.reach() {
-                if let Some(section) = within_face(mesh, point, *vertex)
-                    && front.relax(*vertex, *distance)
-                {
-                    before[vertex.index()] = Some((point, section));
+        front.reset(mesh.n_vertices());
+        let mut towards = vec![None; mesh.n_vertices()];
+        for source in sources {
+            for (vertex, length) in source.reach() {
+                if front.relax(*vertex, *length) {
+                    towards[vertex.index()] = Some(Step { to: source.point(), length: *length });
                 }
             }
         }
@@ -38,47 +31,29 @@ impl EdgeTree {
             f64::INFINITY,
             |_, _| true,
             |from, way| {
-                let edge = ((way.number as usize) < mesh.topology().n_edges()).then_some(EdgeId(way.number));
-                let section = edge.map_or(PathSection::Link(way.length), |edge| {
-                    PathSection::Strip(Strip::within(mesh.topology().edge_corners(edge)[0].face()))
-                });
-                before[way.to.index()] = Some((SurfacePoint::Vertex(from), section));
+                let step = Step { to: SurfacePoint::Vertex(from), length: way.length };
+                towards[way.to.index()] = Some(step);
             },
         );
-        Self { distances: front.into_distances(), before }
+        Self { distances: front.into_distances(), towards }
     }
 
-    /// The shortest path along edges from `target` to a source, if there is one.
-    pub(super) fn path_from(&self, mesh: &IntrinsicMesh, target: SurfacePoint) -> Option<StripPath> {
-        let around = Source::new(mesh, target).ok()?;
-        let total = |(vertex, distance): &(VertexId, f64)| distance + self.distances[vertex.index()];
-        let mut here = around.reach().iter().min_by(|a, b| total(a).total_cmp(&total(b)))?.0;
-        let mut path = StripPath { nodes: vec![target], sections: Vec::new() };
-        if target != SurfacePoint::Vertex(here) {
-            path.sections.push(within_face(mesh, target, here)?);
-            path.nodes.push(SurfacePoint::Vertex(here));
-        }
+    /// The shortest path along edges to a source, from a point with the given distances from vertices, if there is one.
+    pub(super) fn path_from(&self, target: SurfacePoint, reach: &[(VertexId, f64)]) -> Option<Vec<Step>> {
+        let total = |(vertex, length): &(VertexId, f64)| length + self.distances[vertex.index()];
+        let (mut here, length) = *reach.iter().min_by(|a, b| total(a).total_cmp(&total(b)))?;
+        let first = Step { to: SurfacePoint::Vertex(here), length };
+        let mut steps: Vec<Step> = [first].into_iter().filter(|step| step.to != target).collect();
         loop {
-            let (before, section) = self.before[here.index()].clone()?;
-            if before == SurfacePoint::Vertex(here) {
-                return Some(path);
+            let step = self.towards[here.index()]?;
+            if step.to == SurfacePoint::Vertex(here) {
+                return Some(steps);
             }
-            path.sections.push(section);
-            path.nodes.push(before);
-            match before {
+            steps.push(step);
+            match step.to {
                 SurfacePoint::Vertex(vertex) => here = vertex,
-                _ => return Some(path),
+                _ => return Some(steps),
             }
         }
-    }
-}
-
-/// The section within a face from a point to a vertex of a face that holds it.
-fn within_face(mesh: &IntrinsicMesh, point: SurfacePoint, vertex: VertexId) -> Option<PathSection> {
-    let has_vertex = |face: &FaceId| mesh.topology().corner_at(*face, vertex).is_some();
-    match faces_around(mesh, point).into_iter().find(has_vertex) {
-        Some(face) => Some(PathSection::Strip(Strip::within(face))),
-        // A vertex without faces.
-        None => (point == SurfacePoint::Vertex(vertex)).then_some(PathSection::Link(0.0)),
     }
 }

@@ -1,12 +1,11 @@
-//! A field of distances and its sources.
+//! Distances and their sources, which paths lead to.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use surface::{EdgeGraph, FaceId, IntrinsicMesh, VertexId, Way};
+use surface::{FaceId, IntrinsicMesh, SurfacePoint, VertexId};
 
-use super::plane::faces_around;
+use crate::flat::faces_around;
 use crate::source::Source;
-use surface::SurfacePoint;
 
 /// Distances from sources, which paths lead to.
 #[derive(Debug)]
@@ -14,7 +13,6 @@ pub(super) struct PathField<'a> {
     pub(super) mesh: &'a IntrinsicMesh,
     pub(super) sources: &'a [Source],
     pub(super) distances: &'a [f64],
-    links: EdgeGraph,
     /// The sources that are vertices, and the others by the faces that hold them.
     at_vertices: BTreeSet<VertexId>,
     in_faces: BTreeMap<FaceId, Vec<SurfacePoint>>,
@@ -22,10 +20,9 @@ pub(super) struct PathField<'a> {
 
 impl<'a> PathField<'a> {
     pub(super) fn new(mesh: &'a IntrinsicMesh, sources: &'a [Source], distances: &'a [f64]) -> Self {
-        let links = EdgeGraph::new(mesh.n_vertices(), mesh.links().iter().copied());
         let mut at_vertices = BTreeSet::new();
         let mut in_faces: BTreeMap<FaceId, Vec<SurfacePoint>> = BTreeMap::new();
-        for point in sources.iter().map(|source| source.point().simplified(mesh)) {
+        for point in sources.iter().map(Source::point) {
             if let SurfacePoint::Vertex(vertex) = point {
                 at_vertices.insert(vertex);
                 continue;
@@ -34,7 +31,7 @@ impl<'a> PathField<'a> {
                 in_faces.entry(face).or_default().push(point);
             }
         }
-        Self { mesh, sources, distances, links, at_vertices, in_faces }
+        Self { mesh, sources, distances, at_vertices, in_faces }
     }
 
     pub(super) fn is_source(&self, vertex: VertexId) -> bool {
@@ -44,10 +41,5 @@ impl<'a> PathField<'a> {
     /// The sources in a face that are not vertices.
     pub(super) fn sources_within(&self, face: FaceId) -> &[SurfacePoint] {
         self.in_faces.get(&face).map_or(&[], Vec::as_slice)
-    }
-
-    /// The links at a vertex.
-    pub(super) fn links(&self, vertex: VertexId) -> &[Way] {
-        self.links.ways(vertex)
     }
 }

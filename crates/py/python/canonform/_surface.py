@@ -366,14 +366,13 @@ class Surface(Constant):
             ).view(SourceRows)
 
     @overload
-    def path(self, a: Point, b: Point, *, geodesic: Geodesic = ..., **call: Unpack[Call]) -> Path: ...
+    def path(self, a: Point, b: Point, **call: Unpack[Call]) -> Path: ...
     @overload
-    def path(self, a: Point, b: Points, *, geodesic: Geodesic = ..., **call: Unpack[Call]) -> list[Path]: ...
-    def path(self, a: Point, b: Point | Points, *, geodesic: Geodesic = "fast-marching", **call: Unpack[Call]) -> Path | list[Path]:
+    def path(self, a: Point, b: Points, **call: Unpack[Call]) -> list[Path]: ...
+    def path(self, a: Point, b: Point | Points, **call: Unpack[Call]) -> Path | list[Path]:
         """The shortest path along the surface from a to b; one path for each if b is a list, tuple or array of points.
 
-        The path crosses faces: it is straightened until it is locally shortest, so it may be shorter than the distance that an approximate
-        method states.
+        The path crosses faces and is as long as the exact distance.
 
         Parameters
         ----------
@@ -392,7 +391,7 @@ class Surface(Constant):
         [source] = _several(a, self.n_vertices)
         ends = _several(b, self.n_vertices)
         with running(call):
-            paths = self._inner.paths(source, ends, options_of(geodesic=geodesic))
+            paths = self._inner.paths(source, ends)
         found = [Path(points, list(map(parsed, at)), along, length) for points, at, along, length in paths]
         return found[0] if single else found
 

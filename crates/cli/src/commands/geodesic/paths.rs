@@ -1,13 +1,15 @@
 //! Shortest paths from sources to targets.
 
+use std::borrow::Cow;
 use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::Result;
 use base::files::write_atomically;
 use base::object;
-use canonform::geodesics::{PathTracer, SurfacePath};
+use canonform::geodesics::{DistanceSolver, Exact, PathTracer, SurfacePath};
 use canonform::mesh::InputPoint;
+use canonform::settings::Geodesic;
 use serde::Serialize;
 
 use super::task::{Task, milliseconds, spelled};
@@ -30,9 +32,15 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
     let rows = task.solve()?;
     let start = Instant::now();
     let (mut paths, mut facts) = (Vec::new(), Vec::new());
+    let (mesh, budget) = (surface.intrinsic(), task.solver.budget());
+    let exact = (args.method != Geodesic::Exact).then(|| Exact::new(mesh, &budget));
     for row in &rows {
-        let tracer =
-            PathTracer::new(surface.intrinsic(), &row.sources, &row.distances, &task.solver.budget());
+        let mut distances = Cow::Borrowed(&row.distances);
+        if let Some(solver) = &exact {
+            let farthest = args.max_distance.unwrap_or(f64::INFINITY);
+            solver.solve_into(&row.sources, farthest, distances.to_mut()).map_err(canonform::Error::from)?;
+        }
+        let tracer = PathTracer::new(mesh, &row.sources, &distances, &budget);
         for target in &args.path_to {
             let path = SurfacePath::trace(surface, &tracer, &row.from, *target).map_err(fault)?;
             let (source, n_points) = (path.points[0].at, path.points.len());

@@ -6,8 +6,8 @@ mod laws;
 
 use surface::{FaceId, IntrinsicMesh, VertexId};
 
-use super::plane::{faces_around, segment};
 use super::{GeodesicPath, PathTracer};
+use crate::flat::{faces_around, segment};
 use crate::tests::distances_from;
 use crate::{Exact, Source, SurfacePoint};
 

@@ -1,9 +1,8 @@
-//! Faces laid out in the plane.
+//! Faces laid out in the plane, and the points in them.
 
-use surface::{CornerId, EdgeId, FaceId, IntrinsicMesh, VertexId};
+use surface::{CornerId, EdgeId, FaceId, IntrinsicMesh, SurfacePoint, VertexId};
 
 use crate::plane::{PlanePoint, apex, between, distance, sub};
-use surface::SurfacePoint;
 
 /// A face laid out in the plane.
 #[derive(Debug, Clone, Copy)]
@@ -51,17 +50,8 @@ impl Flat {
     }
 }
 
-/// Whether a point of a face is on an edge of that face.
-pub(super) fn is_on(mesh: &IntrinsicMesh, point: SurfacePoint, edge: EdgeId) -> bool {
-    match point {
-        SurfacePoint::Vertex(vertex) => mesh.topology().edges()[edge.index()].contains(&vertex),
-        SurfacePoint::Edge { edge: other, .. } => other == edge,
-        SurfacePoint::Face { .. } => false,
-    }
-}
-
 /// The faces that contain a point.
-pub(super) fn faces_around(mesh: &IntrinsicMesh, point: SurfacePoint) -> Vec<FaceId> {
+pub(crate) fn faces_around(mesh: &IntrinsicMesh, point: SurfacePoint) -> Vec<FaceId> {
     let faces = |corners: &[CornerId]| corners.iter().map(|corner| corner.face()).collect();
     match point {
         SurfacePoint::Vertex(vertex) => faces(mesh.topology().vertex_corners(vertex)),
@@ -71,7 +61,7 @@ pub(super) fn faces_around(mesh: &IntrinsicMesh, point: SurfacePoint) -> Vec<Fac
 }
 
 /// The length of the straight line between two points of a face.
-pub(super) fn segment(mesh: &IntrinsicMesh, face: FaceId, p: SurfacePoint, q: SurfacePoint) -> f64 {
+pub(crate) fn segment(mesh: &IntrinsicMesh, face: FaceId, p: SurfacePoint, q: SurfacePoint) -> f64 {
     let along = |edge: EdgeId, point| match point {
         SurfacePoint::Vertex(v) => {
             mesh.topology().edges()[edge.index()].iter().position(|end| *end == v).map(|end| end as f64)
