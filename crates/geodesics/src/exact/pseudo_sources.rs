@@ -31,32 +31,18 @@ impl<D: Bearing> Emission<'_, D> {
             };
             self.front.reach(new(*vertex), distance / surface.faces.unit, Arrival::Anywhere, bearing);
         }
-        match source.point() {
-            SurfacePoint::Vertex(_) => {}
-            SurfacePoint::Edge { t, .. } => {
-                if let [(a, _), (b, _), ..] = source.reach() {
-                    self.start_on_edge([new(*a), new(*b)], [1.0 - t, t]);
-                }
-            }
-            SurfacePoint::Face { face, barycentric } => {
-                let face = FaceId(surface.new_faces[face.index()]);
-                let vertices = surface.faces.of(face).vertices;
-                // A face that repeats another may have its corners in another order.
-                let slot_of = |v: u32| source.reach().iter().position(|(w, _)| new(*w) == v);
-                let shares = vertices.map(|v| slot_of(v).map_or(0.0, |slot| barycentric[slot]));
-                self.start_in_face(face, shares);
-            }
-        }
-    }
-
-    /// Starts at a point between two vertices, in all faces on their edge.
-    fn start_on_edge(&mut self, ends: [u32; 2], shares: [f64; 2]) {
-        let surface = self.surface;
-        for sector in surface.fans.around(ends[0]) {
+        let shares = match source.point() {
+            SurfacePoint::Vertex(_) => return,
+            SurfacePoint::Edge { t, .. } => vec![1.0 - t, t],
+            SurfacePoint::Face { barycentric, .. } => barycentric.to_vec(),
+        };
+        // The vertices of its edge or face come first, and only faces that hold the point have them all.
+        let own: Vec<u32> = source.reach().iter().take(shares.len()).map(|(v, _)| new(*v)).collect();
+        for sector in surface.fans.around(own[0]) {
             let face = sector.corner.corner.face();
             let vertices = surface.faces.of(face).vertices;
-            if vertices.contains(&ends[1]) {
-                let share = |v| ends.iter().position(|end| *end == v).map_or(0.0, |i| shares[i]);
+            if own.iter().all(|v| vertices.contains(v)) {
+                let share = |v| own.iter().position(|end| *end == v).map_or(0.0, |i| shares[i]);
                 self.start_in_face(face, vertices.map(share));
             }
         }
