@@ -43,7 +43,6 @@ pub(crate) fn generate<'py>(
     let n_poses = poses.iter().max().map_or(0, |pose| pose + 1);
     let of_bodies = ArticulatedOptions { seed, n_vertices };
     let of_creatures = CreatureOptions { seed, n_families: plan + 1, n_poses, n_vertices };
-    of_bodies.validate().map_err(|fault| of_dataset(&fault))?;
     let made = run(py, |observer| {
         observer.begin("shapes", poses.len());
         let shape = |&pose: &usize| {
