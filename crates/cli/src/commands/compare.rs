@@ -52,8 +52,8 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     let max_vertex = a.surface().input_vertex(residual.max_point.into()).0;
     let relation = &found.relation;
     let (shape, [_, class]) = (ShapeMetric::SAME_SHAPE.at, ShapeMetric::SAME_CLASS.gap());
-    let size = match &*in_four_digits(relation.evidence.scale) {
-        "1" => "the same".to_owned(),
+    let size = match &*factor(relation.evidence.scale, 4) {
+        "1.0000" => "the same".to_owned(),
         times => format!("{times} times that of {name_a}"),
     };
     let limits = format!("probably one shape below {shape:.2}, not alike above {class:.2}");
@@ -103,6 +103,11 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     Ok(if failed == Some(true) || not_alike { ExitCode::from(1) } else { code })
 }
 
+/// A factor with so many decimals; a small one by its digits.
+fn factor(x: f64, decimals: usize) -> String {
+    if x < 1e-3 { in_four_digits(x) } else { format!("{x:.decimals$}") }
+}
+
 /// Everything else that was measured.
 fn detailed(found: &MeshComparison, vertex: u32) -> Vec<Fact> {
     let (c, relation) = (&found.comparison, &found.relation);
@@ -124,7 +129,7 @@ fn detailed(found: &MeshComparison, vertex: u32) -> Vec<Fact> {
             format!("{:.6} mesh units, {:.6} at equal size", c.distance, c.normalized_distance),
         ),
         ("by signatures alone", format!("{:.6}", c.shape_distance.fused)),
-        ("scale, second over first", in_four_digits(c.scale)),
+        ("scale, second over first", factor(c.scale, 6)),
         ("mirror image", handedness.to_owned()),
         ("triangulation", triangulation.to_owned()),
         ("residual", format!("median {median:.6}, maximum {max:.6} (at vertex {vertex}), mesh units")),
