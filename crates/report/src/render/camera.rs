@@ -2,6 +2,7 @@
 
 use mesh::TriMesh;
 use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
+use surface::VertexId;
 
 /// Direction of an orthographic view.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,17 +53,17 @@ pub(super) struct Camera {
 }
 
 impl Camera {
-    /// The camera that sees all `faces` in an image of `size` samples.
-    pub(super) fn fit(mesh: &TriMesh, faces: &[[usize; 3]], view: &View, size: [u32; 2]) -> Self {
-        let axes = view.axes(mesh, faces, size[0] > size[1]);
-        let [low, high] = bounds(mesh, faces, &axes);
+    /// The camera that sees all of a [drawable] mesh in an image of `size` samples.
+    pub(super) fn fit(mesh: &TriMesh, view: &View, size: [u32; 2]) -> Self {
+        let axes = view.axes(mesh, size[0] > size[1]);
+        let [low, high] = bounds(mesh, &axes);
         let half = size.map(|s| f64::from(s) / 2.0);
         let border = 2.0 * MARGIN * half[0].min(half[1]);
         let room = |i: usize| (2.0 * (half[i] - border) / (high[i] - low[i])).max(0.0);
         let scale = room(0).min(room(1));
         // Without faces, or with all in one point, any scale will do.
         let scale = if scale.is_finite() { scale } else { 1.0 };
-        let center = if faces.is_empty() { Vector3::zeros() } else { low + (high - low) / 2.0 };
+        let center = if mesh.faces.is_empty() { Vector3::zeros() } else { low + (high - low) / 2.0 };
         Self { axes, scale, center, half }
     }
 
@@ -74,18 +75,18 @@ impl Camera {
 }
 
 /// Lower and upper corner of the bounding box of the faces, rotated by `axes`.
-fn bounds(mesh: &TriMesh, faces: &[[usize; 3]], axes: &Matrix3<f64>) -> [Vector3<f64>; 2] {
+fn bounds(mesh: &TriMesh, axes: &Matrix3<f64>) -> [Vector3<f64>; 2] {
     let nothing = [Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)];
-    faces.iter().flatten().fold(nothing, |[low, high], &v| {
-        let turned = axes * mesh.positions[v].coords;
+    mesh.faces.iter().flatten().fold(nothing, |[low, high], v| {
+        let turned = axes * mesh.positions[v.index()].coords;
         [low.inf(&turned), high.sup(&turned)]
     })
 }
 
 /// Width over height of a mesh in a view; 1 if the mesh has no extent.
 pub fn aspect(mesh: &TriMesh, view: &View) -> f64 {
-    let faces = drawable_faces(mesh);
-    let [low, high] = bounds(mesh, &faces, &view.axes(mesh, &faces, false));
+    let mesh = drawable(mesh);
+    let [low, high] = bounds(&mesh, &view.axes(&mesh, false));
     let aspect = (high.x - low.x) / (high.y - low.y);
     if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 }
 }
@@ -94,16 +95,16 @@ impl View {
     /// The direction in which this view shows `mesh`, independent of the mesh, for images that are wider than high
     /// (`landscape`) or not. Use it to show other meshes from the same direction.
     pub fn fixed(&self, mesh: &TriMesh, landscape: bool) -> Self {
-        Self::Fixed(self.axes(mesh, &drawable_faces(mesh), landscape))
+        Self::Fixed(self.axes(&drawable(mesh), landscape))
     }
 
-    /// Orthonormal rows: right, up, towards the viewer.
-    fn axes(&self, mesh: &TriMesh, faces: &[[usize; 3]], landscape: bool) -> Matrix3<f64> {
+    /// Orthonormal rows: right, up, towards the viewer of a [drawable] mesh.
+    fn axes(&self, mesh: &TriMesh, landscape: bool) -> Matrix3<f64> {
         match *self {
             Self::Upright { azimuth, elevation, up } => upright(azimuth, elevation, up),
             Self::Fixed(axes) => axes,
             Self::Principal => {
-                let [first, second] = principal_axes(mesh, faces);
+                let [first, second] = principal_axes(mesh);
                 let (right, up) = if landscape { (first, second) } else { (second, first) };
                 rows(right, up)
             }
@@ -111,10 +112,12 @@ impl View {
     }
 }
 
-/// The faces whose three corners exist and are finite, as plain indices.
-pub(super) fn drawable_faces(mesh: &TriMesh) -> Vec<[usize; 3]> {
-    let usable = |v: &usize| mesh.positions.get(*v).is_some_and(|p| p.iter().all(|c| c.is_finite()));
-    mesh.faces.iter().map(|f| f.map(|v| v.index())).filter(|f| f.iter().all(usable)).collect()
+/// The mesh with those of its faces whose three corners exist and are finite.
+pub(super) fn drawable(mesh: &TriMesh) -> TriMesh {
+    let usable =
+        |v: &VertexId| mesh.positions.get(v.index()).is_some_and(|p| p.iter().all(|c| c.is_finite()));
+    let faces = mesh.faces.iter().filter(|face| face.iter().all(usable)).copied().collect();
+    TriMesh { positions: mesh.positions.clone(), faces }
 }
 
 fn rows(right: Vector3<f64>, up: Vector3<f64>) -> Matrix3<f64> {
@@ -135,17 +138,14 @@ fn upright(azimuth: f64, elevation: f64, up: Vector3<f64>) -> Matrix3<f64> {
 }
 
 /// The two longest principal axes of the surface, orthonormal; x and y if it has no extent.
-fn principal_axes(mesh: &TriMesh, faces: &[[usize; 3]]) -> [Vector3<f64>; 2] {
+fn principal_axes(mesh: &TriMesh) -> [Vector3<f64>; 2] {
     // Four weighted points, the corners and the centroid, have exactly the first and second moments of a face, so
     // the axes do not depend on the triangulation.
-    let points: Vec<(f64, Vector3<f64>)> = faces
-        .iter()
-        .flat_map(|f| {
-            let [a, b, c] = f.map(|v| mesh.positions[v].coords);
-            let area = (b - a).cross(&(c - a)).norm();
-            [(area / 12.0, a), (area / 12.0, b), (area / 12.0, c), (area * 0.75, (a + b + c) / 3.0)]
-        })
-        .collect();
+    let points = (0..mesh.n_faces()).flat_map(|f| {
+        let ([a, b, c], area) = (mesh.triangle(f).map(|p| p.coords), mesh.area_vector(f).norm());
+        [(area / 12.0, a), (area / 12.0, b), (area / 12.0, c), (area * 0.75, (a + b + c) / 3.0)]
+    });
+    let points: Vec<(f64, Vector3<f64>)> = points.collect();
     let area: f64 = points.iter().map(|p| p.0).sum();
     if !(area > 0.0 && area.is_finite()) {
         return [Vector3::x(), Vector3::y()];

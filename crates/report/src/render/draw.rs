@@ -3,7 +3,7 @@
 use base::{Exceeded, Observer};
 use mesh::TriMesh;
 
-use super::camera::{Camera, drawable_faces};
+use super::camera::{Camera, drawable};
 use super::coloring::Paint;
 use super::normals::corner_normals;
 use super::options::RenderOptions;
@@ -27,12 +27,12 @@ pub fn render(
 ) -> Result<RgbaImage, Exceeded> {
     let budget = observer.budget();
     budget.check()?;
-    let faces = drawable_faces(mesh);
+    let mesh = &drawable(mesh);
     let samples = options.supersampling.clamp(1, 4);
     let size = [options.width, options.height].map(|side| side.clamp(1, 8192) * samples);
-    let camera = Camera::fit(mesh, &faces, &options.view, size);
-    let buffer = DepthBuffer::draw(mesh, &faces, &camera, size, &budget)?;
-    let normals = corner_normals(mesh, &faces, &camera, options.crease.clamp(0.0, 90.0));
+    let camera = Camera::fit(mesh, &options.view, size);
+    let buffer = DepthBuffer::draw(mesh, &camera, size, &budget)?;
+    let normals = corner_normals(mesh, &camera, options.crease.clamp(0.0, 90.0));
     let paint = Paint::new(mesh.n_vertices(), (&options.coloring, options.colors), &options.marks, samples);
     budget.check()?;
     Ok(shade(&buffer, &normals, &paint, samples, options.background))

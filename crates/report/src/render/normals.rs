@@ -15,23 +15,12 @@ const MANY: usize = 256;
 /// below `crease` degrees, each first turned to the side of that face. So the result does not depend on the
 /// orientation of faces, and the two sides of a thin sheet do not cancel. At a vertex of more than [`MANY`] faces, each keeps
 /// its own normal.
-pub(super) fn corner_normals(
-    mesh: &TriMesh,
-    faces: &[[usize; 3]],
-    camera: &Camera,
-    crease: f64,
-) -> Vec<[Vector3<f32>; 3]> {
-    let areas: Vec<Vector3<f64>> = faces
-        .iter()
-        .map(|f| {
-            let [a, b, c] = f.map(|v| mesh.positions[v]);
-            camera.axes * (b - a).cross(&(c - a))
-        })
-        .map(|area| if area.z < 0.0 { -area } else { area })
-        .collect();
+pub(super) fn corner_normals(mesh: &TriMesh, camera: &Camera, crease: f64) -> Vec<[Vector3<f32>; 3]> {
+    let areas = (0..mesh.n_faces()).map(|f| camera.axes * mesh.area_vector(f));
+    let areas: Vec<Vector3<f64>> = areas.map(|area| if area.z < 0.0 { -area } else { area }).collect();
     let units: Vec<Vector3<f64>> =
         areas.iter().map(|a| a.try_normalize(0.0).unwrap_or_else(Vector3::z)).collect();
-    let at_vertices = faces.iter().enumerate().flat_map(|(f, face)| face.map(|v| (v, f as u32)));
+    let at_vertices = mesh.faces.iter().enumerate().flat_map(|(f, face)| face.map(|v| (v.index(), f as u32)));
     let around = Rows::collect(mesh.n_vertices(), at_vertices);
     let limit = crease.to_radians().cos() - 1e-9;
     let normal = |face: usize, vertex: usize| {
@@ -43,5 +32,5 @@ pub(super) fn corner_normals(
         let sum: Vector3<f64> = if around.len() > MANY { own } else { around.iter().map(turned).sum() };
         sum.try_normalize(0.0).unwrap_or(own).cast::<f32>()
     };
-    faces.iter().enumerate().map(|(f, face)| face.map(|v| normal(f, v))).collect()
+    mesh.faces.iter().enumerate().map(|(f, face)| face.map(|v| normal(f, v.index()))).collect()
 }

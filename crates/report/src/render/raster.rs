@@ -70,12 +70,11 @@ const PADDING: f64 = 1.0;
 impl DepthBuffer {
     pub(super) const BACKGROUND: u32 = u32::MAX;
 
-    /// Draws all faces. Of two faces at the same depth the first stays.
+    /// Draws all faces of a drawable mesh. Of two faces at the same depth the first stays.
     ///
     /// A face costs time in the rows that it crosses, and in the samples that it covers.
     pub(super) fn draw(
         mesh: &TriMesh,
-        faces: &[[usize; 3]],
         camera: &Camera,
         size: [u32; 2],
         budget: &Budget,
@@ -86,10 +85,11 @@ impl DepthBuffer {
             size,
             depth: vec![f32::NEG_INFINITY; size[0] * size[1]],
             face: vec![Self::BACKGROUND; size[0] * size[1]],
-            projected: Vec::with_capacity(faces.len()),
+            projected: Vec::with_capacity(mesh.n_faces()),
         };
         let mut meter = budget.meter();
-        for (f, &face) in faces.iter().enumerate() {
+        for (f, face) in mesh.faces.iter().enumerate() {
+            let face = face.map(|v| v.index());
             let corners = face.map(|v| points[v]);
             let projected = Projected::new(face, corners);
             if let Some(projected) = &projected {
@@ -180,15 +180,14 @@ mod tests {
     }
 
     fn drawn(mesh: &TriMesh, side: u32) -> (DepthBuffer, usize) {
-        let faces = super::super::camera::drawable_faces(mesh);
-        let camera = Camera::fit(mesh, &faces, &View::default(), [side; 2]);
-        let mut buffer = DepthBuffer::draw(mesh, &faces, &camera, [side; 2], &Budget::unlimited()).unwrap();
+        let camera = Camera::fit(mesh, &View::default(), [side; 2]);
+        let mut buffer = DepthBuffer::draw(mesh, &camera, [side; 2], &Budget::unlimited()).unwrap();
         // Drawing everything once more compares the same samples and changes nothing.
         let (depth, face) = (buffer.depth.clone(), buffer.face.clone());
         let mut work = 0;
-        for (f, corners) in faces.iter().enumerate() {
+        for f in 0..mesh.n_faces() {
             if let Some(projected) = buffer.projected[f] {
-                let corners = corners.map(|v| camera.project(&mesh.positions[v]));
+                let corners = mesh.triangle(f).map(|corner| camera.project(&corner));
                 work += buffer.fill(f as u32, &projected, corners);
             }
         }

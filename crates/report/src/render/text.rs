@@ -4,7 +4,7 @@ use base::Budget;
 use mesh::TriMesh;
 use nalgebra::Point3;
 
-use super::camera::{Camera, drawable_faces};
+use super::camera::{Camera, drawable};
 use super::options::{Background, RenderOptions};
 use super::raster::DepthBuffer;
 use crate::color::{Rgb, mix, to_linear};
@@ -62,9 +62,9 @@ pub(super) fn write_labels(
     if labels.is_empty() {
         return Ok(());
     }
-    let (size, faces) = ([image.width(), image.height()], drawable_faces(mesh));
-    let camera = Camera::fit(mesh, &faces, &options.view, size);
-    let nearest = DepthBuffer::draw(mesh, &faces, &camera, size, budget)?;
+    let (size, mesh) = ([image.width(), image.height()], drawable(mesh));
+    let camera = Camera::fit(&mesh, &options.view, size);
+    let nearest = DepthBuffer::draw(&mesh, &camera, size, budget)?;
     let em = type_size(size);
     let seen = |(at, text): &'_ Label| {
         let [x, y, depth] = camera.project(&Point3::from(*at));
