@@ -83,6 +83,16 @@ pub enum Side {
     Second,
 }
 
+impl Side {
+    /// A pair in the other order, if this is the second side: what belongs to this side comes first.
+    pub fn ordered<T>(self, [first, second]: [T; 2]) -> [T; 2] {
+        match self {
+            Self::First => [first, second],
+            Self::Second => [second, first],
+        }
+    }
+}
+
 /// Forms of unit area with a smaller root mean square distance fit so well that the normals of their surfaces can be
 /// compared: three times that of two poses. Between poses of TOSCA's cats, centaurs and davids the distance is mostly below 0.07, between two of
 /// these animals mostly above 0.1; but a cat and a dog may be 0.06 apart, so a fit alone does not make one shape.

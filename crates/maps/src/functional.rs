@@ -6,36 +6,39 @@ use nalgebra::Cholesky;
 use crate::nearest_rows::nearest_rows;
 
 /// A map of points of a surface to those of another, and one back: positions in the lists of samples, or vertices.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct TwoWayMap {
-    pub(crate) forth: Vec<usize>,
-    pub(crate) back: Vec<usize>,
-}
+pub(crate) type TwoWayMap = [Vec<usize>; 2];
 
-/// Eigenfunctions at the samples of two surfaces, evenly spread, one row for each sample.
+/// Eigenfunctions at points of two surfaces, evenly spread, one row for each point.
 #[derive(Debug)]
 pub(crate) struct SampledPair {
-    pub(crate) a: Matrix,
-    pub(crate) b: Matrix,
+    pub(crate) rows: [Matrix; 2],
     /// Eigenfunctions at landmarks, which correspond row by row.
     pub(crate) landmarks: [Matrix; 2],
 }
 
 impl SampledPair {
-    pub(crate) fn new(a: Matrix, b: Matrix) -> Self {
-        let landmarks = [&a, &b].map(|of| Matrix::zeros(0, of.ncols()));
-        Self { a, b, landmarks }
+    pub(crate) fn new(rows: [Matrix; 2]) -> Self {
+        let landmarks = rows.each_ref().map(|of| Matrix::zeros(0, of.ncols()));
+        Self { rows, landmarks }
+    }
+
+    /// The number of points of the side that has fewer.
+    pub(crate) fn n_points(&self) -> usize {
+        self.rows[0].nrows().min(self.rows[1].nrows())
+    }
+
+    /// The number of eigenfunctions of the side that has fewer.
+    pub(crate) fn n_functions(&self) -> usize {
+        self.rows[0].ncols().min(self.rows[1].ncols())
     }
 }
 
 /// The maps of functions that follow from maps of points, with `k` eigenfunctions on each side.
+///
+/// * `C`, k x k: coefficients on the first surface of the eigenfunctions of the second, pulled back by the map to the second;
+/// * `D`, k x k: coefficients on the second surface of the eigenfunctions of the first, pulled back by the map to the first.
 #[derive(Debug, Clone)]
-pub(crate) struct FunctionalMaps {
-    /// `C`, k x k: coefficients on the first surface of the eigenfunctions of the second, pulled back by `forth`.
-    pub(crate) forth: Matrix,
-    /// `D`, k x k: coefficients on the second surface of the eigenfunctions of the first, pulled back by `back`.
-    pub(crate) back: Matrix,
-}
+pub(crate) struct FunctionalMaps([Matrix; 2]);
 
 /// The coefficients, by least squares over evenly spread samples, of as many functions in the first eigenfunctions.
 fn coefficients(eigenfunctions: &Matrix, functions: &Matrix) -> Matrix {
@@ -52,64 +55,62 @@ fn coefficients(eigenfunctions: &Matrix, functions: &Matrix) -> Matrix {
 impl FunctionalMaps {
     /// The maps of functions by least squares over the samples.
     pub(crate) fn new(pair: &SampledPair, maps: &TwoWayMap, k: usize) -> Self {
-        let [of_a, of_b] = &pair.landmarks;
-        let one = |own: &Matrix, other: &Matrix, map: &[usize], [x, y]: [&Matrix; 2]| {
-            let (own, other) = (own.columns(0, k).into_owned(), other.columns(0, k).select_rows(map));
-            coefficients(&below(own, &x.columns(0, k)), &below(other, &y.columns(0, k)))
+        let one = |side: usize| {
+            let [own, other] = [side, 1 - side].map(|side| pair.rows[side].columns(0, k));
+            let [x, y] = [side, 1 - side].map(|side| pair.landmarks[side].columns(0, k));
+            coefficients(&below(own.into_owned(), &x), &below(other.select_rows(&maps[side]), &y))
         };
-        Self {
-            forth: one(&pair.a, &pair.b, &maps.forth, [of_a, of_b]),
-            back: one(&pair.b, &pair.a, &maps.back, [of_b, of_a]),
-        }
+        Self([one(0), one(1)])
+    }
+
+    /// `C`.
+    pub(crate) fn to_first(&self) -> &Matrix {
+        &self.0[0]
     }
 
     /// Number of eigenfunctions.
     pub(crate) fn k(&self) -> usize {
-        self.forth.nrows()
+        self.0[0].nrows()
     }
 
     /// How far both maps are from orthogonal ones: `(|C'C - I|² + |D'D - I|²) / k`. Isometries have 0.
     pub(crate) fn defect(&self) -> f64 {
         let one = |map: &Matrix| (map.tr_mul(map) - Matrix::identity(self.k(), self.k())).norm_squared();
-        (one(&self.forth) + one(&self.back)) / self.k() as f64
+        self.0.iter().map(one).sum::<f64>() / self.k() as f64
     }
 
-    /// Places of points of the first surface, near those of the points of the second to which they correspond, by both
-    /// maps: `[Φ, Φ D']`.
-    pub(crate) fn places_a(&self, rows: &Matrix) -> Matrix {
+    /// Places of points of one surface, near those of the points of the other to which they correspond, by both maps: `[Φ, Φ D']`
+    /// of the first (0), `[Ψ C', Ψ]` of the second (1).
+    pub(crate) fn places(&self, side: usize, rows: &Matrix) -> Matrix {
         let own = rows.columns(0, self.k());
-        beside(own.into_owned(), own * self.back.transpose())
+        let other = own * self.0[1 - side].transpose();
+        if side == 0 { beside(own.into_owned(), other) } else { beside(other, own.into_owned()) }
     }
 
-    /// Places of points of the second surface: `[Ψ C', Ψ]`.
-    pub(crate) fn places_b(&self, rows: &Matrix) -> Matrix {
-        let own = rows.columns(0, self.k());
-        beside(own * self.forth.transpose(), own.into_owned())
-    }
-
-    /// Places of all vertices of both surfaces, by their eigenfunctions.
-    pub(crate) fn placed(&self, [a, b]: [&Matrix; 2]) -> [Matrix; 2] {
-        [self.places_a(a), self.places_b(b)]
+    /// The same for points of both surfaces.
+    pub(crate) fn placed(&self, rows: [&Matrix; 2]) -> [Matrix; 2] {
+        [0, 1].map(|side| self.places(side, rows[side]))
     }
 
     /// The maps of samples that follow.
     pub(crate) fn sample_maps(&self, pair: &SampledPair) -> TwoWayMap {
-        let [forth, back] = nearest_rows(&self.places_a(&pair.a), &self.places_b(&pair.b));
-        TwoWayMap { forth, back }
+        let [a, b] = self.placed(pair.rows.each_ref());
+        nearest_rows(&a, &b)
     }
 
     /// These maps, followed by others.
     pub(crate) fn then(&self, next: &Self) -> Self {
         let k = self.k().min(next.k());
         let product = |x: &Matrix, y: &Matrix| x.view((0, 0), (k, k)) * y.view((0, 0), (k, k));
-        Self { forth: product(&self.forth, &next.forth), back: product(&next.back, &self.back) }
+        Self([product(&self.0[0], &next.0[0]), product(&next.0[1], &self.0[1])])
     }
 }
 
 /// A map of functions, and its transpose for the one back.
 impl From<Matrix> for FunctionalMaps {
-    fn from(forth: Matrix) -> Self {
-        Self { back: forth.transpose(), forth }
+    fn from(map: Matrix) -> Self {
+        let back = map.transpose();
+        Self([map, back])
     }
 }
 

@@ -5,7 +5,7 @@ use linalg::Matrix;
 use surface::VertexId;
 
 use crate::error::{LandmarkConflict, MapError};
-use crate::functional::{FunctionalMaps, SampledPair, TwoWayMap};
+use crate::functional::{FunctionalMaps, SampledPair};
 use crate::local::{between, least_distance};
 use crate::nearest_rows::nearest_rows;
 use crate::operators::{Operators, fitted};
@@ -79,7 +79,7 @@ impl KnownMap {
     /// Samples and landmarks, which maps of functions take to each other.
     pub(crate) fn and_landmarks(&self, pair: SampledPair, shapes: [&MapShape; 2]) -> SampledPair {
         // A landmark weighs as much as one of those of the form, which are spread over the surface.
-        let weight = (pair.a.nrows() as f64 / shapes[0].landmarks().len() as f64).sqrt();
+        let weight = (pair.n_points() as f64 / shapes[0].landmarks().len() as f64).sqrt();
         let rows = |side: usize| shapes[side].spectrum.vectors.select_rows(&self.landmarks_on(side)) * weight;
         SampledPair { landmarks: [0, 1].map(rows), ..pair }
     }
@@ -113,15 +113,15 @@ impl KnownMap {
         if pairs.len() < SAMPLES_A_FUNCTION * most {
             pairs = (0..self.initial.len()).filter_map(|x| partner(&x)).collect();
         }
-        let first = most.min(pairs.len() / SAMPLES_A_FUNCTION).min(pair.a.ncols()).min(pair.b.ncols());
+        let first = most.min(pairs.len() / SAMPLES_A_FUNCTION).min(pair.n_functions());
         if first == 0 {
             return None;
         }
         let (xs, ys): (Vec<usize>, Vec<usize>) = pairs.into_iter().unzip();
         let rows = |shape: &MapShape, vertices: &[usize]| shape.spectrum.vectors.select_rows(vertices);
-        let known = SampledPair::new(rows(a, &xs), rows(b, &ys));
+        let known = SampledPair::new([rows(a, &xs), rows(b, &ys)]);
         let all: Vec<usize> = (0..xs.len()).collect();
-        let functional = FunctionalMaps::new(&known, &TwoWayMap { forth: all.clone(), back: all }, first);
+        let functional = FunctionalMaps::new(&known, &[all.clone(), all], first);
         Some(Start { maps: functional.sample_maps(pair), first })
     }
 
@@ -135,8 +135,9 @@ impl KnownMap {
             return Ok(Vec::new());
         }
         let [from, to] = [0, 1].map(|side| self.landmarks_on(side));
-        let queries = functional.places_a(&a.spectrum.vectors.select_rows(&from));
-        let [images, _] = nearest_rows(&queries, &functional.places_b(&b.spectrum.vectors));
+        let rows = [&a.spectrum.vectors.select_rows(&from), &b.spectrum.vectors];
+        let [queries, all] = functional.placed(rows);
+        let [images, _] = nearest_rows(&queries, &all);
         // Two points are at least as far apart as their distances from any landmark of the form differ.
         let (found, sought) = (b.distances_to(&images)?, b.distances_to(&to)?);
         Ok(found.column_iter().zip(sought.column_iter()).map(|(p, q)| least_distance(p, q)).collect())

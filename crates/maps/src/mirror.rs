@@ -17,7 +17,7 @@ impl MapShape {
             return Ok(found);
         }
         let (known, params) = (KnownMap::default(), MapParams::default());
-        let search = MapSearch { a: self, b: self, known: &known, params: &params, budget };
+        let search = MapSearch { shapes: [self; 2], known: &known, params: &params, budget };
         let is_mirrored = |found: &Scored| found.kind() == MapKind::Mirrored;
         let starts = search.starts(&[-1.0])?.into_iter().filter(is_mirrored).map(|start| start.functional);
         let mut found = search.sketched(&search.stage(1), starts)?;

@@ -43,18 +43,14 @@ pub enum MapElements<'a> {
 /// # Panics
 /// If `functional` is not square, as that of a part.
 pub fn mapped_points(
-    [a, b]: [&MapShape; 2],
+    shapes: [&MapShape; 2],
     functional: &Matrix,
     of: Side,
     elements: MapElements<'_>,
     target: &Topology,
 ) -> Vec<SurfacePoint> {
-    let [on_a, on_b] =
-        FunctionalMaps::from(functional.clone()).placed([&a.spectrum.vectors, &b.spectrum.vectors]);
-    let (own, other, shape) = match of {
-        Side::First => (on_a, on_b, b),
-        Side::Second => (on_b, on_a, a),
-    };
+    let placed = FunctionalMaps::from(functional.clone()).placed(shapes.map(|shape| &shape.spectrum.vectors));
+    let ([own, other], [_, shape]) = (of.ordered(placed), of.ordered(shapes));
     let nearest = shape.nearest_vertices(&other, &own);
     // Rows next to each other in memory.
     let (own, rows) = (own.transpose(), other.transpose());

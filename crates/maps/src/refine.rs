@@ -43,7 +43,7 @@ pub(crate) fn scored_as_given(
     search: &MapSearch<'_>,
     given: &KnownMap,
 ) -> Result<Option<SurfaceMap>, MapError> {
-    let (params, shapes) = (search.params, [search.a, search.b]);
+    let MapSearch { params, shapes, .. } = *search;
     let pair = search.samples(usize::MAX);
     let Some(start) = given.start(&pair, shapes, params.eigenfunctions) else { return Ok(None) };
     // No functions are taken in that the given pairs do not determine.
@@ -94,7 +94,7 @@ pub(crate) fn best_of_each_kind(
     }
     let refine = |(kind, is_mixture, sketch): (MapKind, bool, Scored)| -> Result<_, DescriptorError> {
         let refined = refined(search, &sketch)?;
-        let mismatch = refined.fine_mismatch([search.a, search.b]);
+        let mismatch = refined.fine_mismatch(search.shapes);
         let (coset, sketched) = (sketch.coset, sketch.cost());
         Ok(Finalist { kind, coset, is_mixture, sketched, refined, mismatch })
     };
@@ -196,7 +196,7 @@ impl Refined {
 /// A sketch on all samples and eigenfunctions.
 fn refined(search: &MapSearch<'_>, sketch: &Scored) -> Result<Scored, DescriptorError> {
     let params = search.params;
-    let pair = search.known.and_landmarks(search.samples(usize::MAX), [search.a, search.b]);
+    let pair = search.known.and_landmarks(search.samples(usize::MAX), search.shapes);
     let start = Start { maps: sketch.functional.sample_maps(&pair), first: params.functions };
     let refined = search.scored(&Stage { pair, last: params.eigenfunctions }, vec![start])?;
     // Refinement may mix two maps, where the sketch is right.
@@ -223,7 +223,7 @@ fn on_all_vertices(
         confidence,
         vertex_confidence: vertex_confidence([a, b], [1.0; 2], &vertices)?,
         vertices: vertices.into_iter().map(|y| Some(VertexId::from(y))).collect(),
-        functional: found.functional.forth.clone(),
+        functional: found.functional.to_first().clone(),
         landmarks: Vec::new(),
         alternative: None,
         part: None,

@@ -43,18 +43,18 @@ impl Scored {
         [a, b]: [&MapShape; 2],
         known: &KnownMap,
         params: &MapParams,
-        Sketch { maps, functional }: Sketch,
+        Sketch { maps: [forth, back], functional }: Sketch,
     ) -> Result<Self, DescriptorError> {
         let images = |from: &MapShape, map: &[usize], to: &MapShape| -> Vec<usize> {
             map.iter().take(from.landmarks().len()).map(|&i| to.samples[i]).collect()
         };
-        let to_images = b.distances_to(&images(a, &maps.forth, b))?;
-        let distortion = codistortion(&a.distances_to(&images(b, &maps.back, a))?, &to_images);
-        let agreement = a.agreement(b, &functional.forth, &maps.forth);
+        let to_images = b.distances_to(&images(a, &forth, b))?;
+        let distortion = codistortion(&a.distances_to(&images(b, &back, a))?, &to_images);
+        let agreement = a.agreement(b, functional.to_first(), &forth);
         // Agreements nearer to 1 than refinement changes them are as good as 1.
         let missing = agreement.map_or(1.0, |agreement| (1.0 - agreement.abs()).max(0.5 * params.lost));
         let mismatch = match (&a.curvature, &b.curvature) {
-            (Some(x), Some(y)) => 0.5 * (mismatch(x, y, &maps.forth) + mismatch(y, x, &maps.back)),
+            (Some(x), Some(y)) => 0.5 * (mismatch(x, y, &forth) + mismatch(y, x, &back)),
             _ => 1.0,
         };
         let score = distortion * functional.defect() * missing * mismatch;

@@ -20,8 +20,7 @@ use crate::surface_map::MapKind;
 /// A search with what is known and its parameters.
 #[derive(Clone, Copy)]
 pub(crate) struct MapSearch<'a> {
-    pub(crate) a: &'a MapShape,
-    pub(crate) b: &'a MapShape,
+    pub(crate) shapes: [&'a MapShape; 2],
     pub(crate) known: &'a KnownMap,
     pub(crate) params: &'a MapParams,
     pub(crate) budget: &'a Budget,
@@ -33,7 +32,7 @@ impl MapSearch<'_> {
         let MapSearch { params, known, .. } = self;
         let mut starts = self.starts(&[1.0, -1.0])?;
         known.check_orientation(&starts, params)?;
-        let fits = known.fitted([self.a, self.b]).into_iter().map(FunctionalMaps::from);
+        let fits = known.fitted(self.shapes).into_iter().map(FunctionalMaps::from);
         starts.extend(self.sketched(&self.stage(2), fits)?);
         // What is beside an identity, whose score is rounding, has its mirrors already. Those of two poses are near 1e-5.
         if starts.iter().all(|start| start.score > f64::EPSILON.sqrt()) {
@@ -44,7 +43,7 @@ impl MapSearch<'_> {
         let found =
             self.sketched(&stage, params.distinct(starts).into_iter().map(|start| start.functional))?;
         let mut found = self.with_mirrored(params.distinct(found))?;
-        let initial = known.start(&stage.pair, [self.a, self.b], stage.last).into_iter().collect();
+        let initial = known.start(&stage.pair, self.shapes, stage.last).into_iter().collect();
         let coset = found.len();
         let favored = |one: Scored| Scored { score: one.score / params.clearly, coset, ..one };
         found.extend(self.scored(&stage, initial)?.into_iter().map(favored));
@@ -54,23 +53,25 @@ impl MapSearch<'_> {
     /// Different maps that are fitted with these signs, or follow from alignments of the forms; on few samples.
     pub(crate) fn starts(&self, signs: &[f64]) -> Result<Vec<Scored>, DescriptorError> {
         let stage = self.stage(2);
-        let operators = || self.a.operators.iter().zip(&self.b.operators);
+        let [a, b] = self.shapes;
+        let operators = || a.operators.iter().zip(&b.operators);
         let fits = signs.iter().flat_map(|sign| operators().flat_map(|(x, y)| fitted(&[[x, y]], *sign)));
         let mut found = self.sketched(&stage, fits.map(FunctionalMaps::from))?;
-        found.extend(self.scored(&stage, Start::aligned(self.a, self.b, stage.pair.a.nrows())?)?);
+        found.extend(self.scored(&stage, Start::aligned(a, b, stage.pair.n_points())?)?);
         Ok(self.params.distinct(found))
     }
 
     /// Maps that take the ends of limbs to where found ones take them, with the other orientation: of people, those that exchange
     /// front and back.
     fn turned(&self, found: &[Scored]) -> Result<Vec<FunctionalMaps>, DescriptorError> {
-        let ends = self.a.ends_of_limbs()?;
-        let (Some(of_a), Some(of_b)) = (self.a.operators.first(), self.b.operators.first()) else {
+        let [a, b] = self.shapes;
+        let ends = a.ends_of_limbs()?;
+        let (Some(of_a), Some(of_b)) = (a.operators.first(), b.operators.first()) else {
             return Ok(Vec::new());
         };
-        let heat_on_a = self.a.heat_operators(&ends);
-        let rows = self.a.spectrum.vectors.select_rows(&ends);
-        let other = self.b.spectrum.vectors.select_rows(&self.b.samples);
+        let heat_on_a = a.heat_operators(&ends);
+        let rows = a.spectrum.vectors.select_rows(&ends);
+        let other = b.spectrum.vectors.select_rows(&b.samples);
         let one = |found: &Scored| {
             let sign = match found.kind() {
                 MapKind::Direct => -1.0,
@@ -78,9 +79,9 @@ impl MapSearch<'_> {
                 MapKind::Unoriented => return Vec::new(),
             };
             let [images, _] =
-                nearest_rows(&found.functional.places_a(&rows), &found.functional.places_b(&other));
-            let images: Vec<usize> = images.into_iter().map(|y| self.b.samples[y]).collect();
-            fitted(&[[of_a, of_b], [&heat_on_a, &self.b.heat_operators(&images)]], sign)
+                nearest_rows(&found.functional.places(0, &rows), &found.functional.places(1, &other));
+            let images: Vec<usize> = images.into_iter().map(|y| b.samples[y]).collect();
+            fitted(&[[of_a, of_b], [&heat_on_a, &b.heat_operators(&images)]], sign)
         };
         let all: Vec<Vec<Matrix>> = found.par_iter().map(one).collect();
         Ok(all.into_iter().flatten().map(FunctionalMaps::from).collect())
@@ -99,7 +100,8 @@ impl MapSearch<'_> {
     /// left and right stand and fall together: each has the score of both. Other mirrors only lead to more maps, since a right
     /// map and a wrong one may differ by front and back.
     fn with_mirrored(&self, mut found: Vec<Scored>) -> Result<Vec<Scored>, DescriptorError> {
-        let mirrors = [self.a.mirrors(self.budget)?, self.b.mirrors(self.budget)?];
+        let [a, b] = self.shapes;
+        let mirrors = [a.mirrors(self.budget)?, b.mirrors(self.budget)?];
         let others = mirrors.map(|of| &of.others[..]);
         let stage = self.stage(1);
         let turned: Vec<_> = found.iter().flat_map(|one| mirrored(one, others)).collect();
@@ -130,9 +132,8 @@ impl MapSearch<'_> {
 
     /// Eigenfunctions at the first `n` samples of both surfaces.
     pub(crate) fn samples(&self, n: usize) -> SampledPair {
-        let n = n.min(self.a.samples.len()).min(self.b.samples.len());
-        let [a, b] = [self.a, self.b].map(|shape| shape.spectrum.vectors.select_rows(&shape.samples[..n]));
-        SampledPair::new(a, b)
+        let n = self.shapes.iter().fold(n, |n, shape| n.min(shape.samples.len()));
+        SampledPair::new(self.shapes.map(|shape| shape.spectrum.vectors.select_rows(&shape.samples[..n])))
     }
 
     /// Refines starts.
@@ -140,7 +141,7 @@ impl MapSearch<'_> {
         let last = stage.last.min(self.params.eigenfunctions);
         let one = |start: Start| {
             self.budget.check().map_err(LinalgError::from)?;
-            Scored::new([self.a, self.b], self.known, self.params, Sketch::new(&stage.pair, start, last))
+            Scored::new(self.shapes, self.known, self.params, Sketch::new(&stage.pair, start, last))
         };
         starts.into_par_iter().map(one).collect()
     }

@@ -13,8 +13,7 @@ impl Sketch {
     /// Refines a start by taking in eigenfunctions of higher and higher frequency, up to `last` (ZoomOut, `melzi2019` in
     /// `REFERENCES.bib`).
     pub(crate) fn new(pair: &SampledPair, start: Start, last: usize) -> Self {
-        let known = pair.a.nrows().min(pair.b.nrows()) / SAMPLES_A_FUNCTION;
-        let last = last.min(known).max(1).min(pair.a.ncols()).min(pair.b.ncols());
+        let last = last.min(pair.n_points() / SAMPLES_A_FUNCTION).max(1).min(pair.n_functions());
         let Start { mut maps, first } = start;
         let mut k = first.min(last);
         loop {

@@ -35,10 +35,7 @@ impl Start {
         };
         let mut found: Vec<TwoWayMap> = alignments(&a.form, &b.form)
             .iter()
-            .map(|motion| TwoWayMap {
-                forth: near(&on_a, &on_b, motion),
-                back: near(&on_b, &on_a, &motion.inverse()),
-            })
+            .map(|motion| [near(&on_a, &on_b, motion), near(&on_b, &on_a, &motion.inverse())])
             .collect();
         found.dedup();
         Ok(found.into_iter().map(|maps| Self { maps, first: ALIGNED }).collect())

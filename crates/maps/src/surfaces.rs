@@ -61,8 +61,10 @@ pub fn map_surfaces(
     let side = possible_part(a, b);
     known.check([a, b], side)?;
     let budget = observer.budget();
-    let search = MapSearch { a, b, known, params, budget: &budget };
-    let mut maps = search.maps()?;
+    let search = MapSearch { shapes: [a, b], known, params, budget: &budget };
+    let best = best_of_each_kind(&search, search.sketches()?)?;
+    let mut maps: Vec<SurfaceMap> =
+        best.iter().map(|best| best.on_all_vertices([a, b])).collect::<Result<_, _>>()?;
     if let Some(side) = side.filter(|_| known.functions.is_none()) {
         let of_part = part_maps(&search, side)?;
         let least = |maps: &[SurfaceMap]| maps.iter().map(|map| map.distortion).fold(f64::INFINITY, f64::min);
@@ -90,7 +92,7 @@ pub fn score_map(
     known.check([a, b], None)?;
     let budget = observer.budget();
     let others = KnownMap { initial: Vec::new(), ..known.clone() };
-    scored_as_given(&MapSearch { a, b, known: &others, params, budget: &budget }, known)
+    scored_as_given(&MapSearch { shapes: [a, b], known: &others, params, budget: &budget }, known)
 }
 
 /// The surface that may be a part of the other; `None` if neither has a boundary and is much smaller.
@@ -102,14 +104,5 @@ fn possible_part(a: &MapShape, b: &MapShape) -> Option<Side> {
         () if is_part(a, share) => Some(Side::First),
         () if is_part(b, 1.0 / share) => Some(Side::Second),
         () => None,
-    }
-}
-
-impl MapSearch<'_> {
-    /// The best map of each orientation of two wholes.
-    fn maps(&self) -> Result<Vec<SurfaceMap>, MapError> {
-        let shapes = [self.a, self.b];
-        let best = best_of_each_kind(self, self.sketches()?)?;
-        Ok(best.iter().map(|best| best.on_all_vertices(shapes)).collect::<Result<_, _>>()?)
     }
 }

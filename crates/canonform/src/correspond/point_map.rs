@@ -152,16 +152,16 @@ impl<'a, S: Borrow<Surface>> Mapping<'a, S> {
     /// is taken to it.
     pub fn vertices(&self, of: Side) -> PointMap {
         let surfaces = self.shapes.map(|shape| shape.surface());
-        let [own, other] = ordered(surfaces, of);
+        let [own, other] = of.ordered(surfaces);
         if let Some(partners) = self.partners {
-            let [partners, _] = ordered(partners.each_ref(), of);
+            let [partners, _] = of.ordered(partners.each_ref());
             let point = |v: &Option<VertexId>| Some(SurfacePoint::Vertex(other.repaired_vertex((*v)?).ok()?));
             return PointMap { points: in_faces(partners.iter().map(point), other) };
         }
         let mut found = self.mapped(of, MapElements::Vertices);
         for [x, y] in self.landmarks {
             let pair = [surfaces[0].repaired_vertex(*x), surfaces[1].repaired_vertex(*y)];
-            if let [Ok(x), Ok(y)] = ordered(pair, of) {
+            if let [Ok(x), Ok(y)] = of.ordered(pair) {
                 found[x.index()] = SurfacePoint::Vertex(y);
             }
         }
@@ -171,9 +171,9 @@ impl<'a, S: Borrow<Surface>> Mapping<'a, S> {
 
     /// The same for the centroid of every face of one side.
     pub fn faces(&self, of: Side) -> PointMap {
-        let [own, other] = ordered(self.shapes.map(|shape| shape.surface()), of);
+        let [own, other] = of.ordered(self.shapes.map(|shape| shape.surface()));
         if let Some(partners) = self.partners {
-            let [partners, _] = ordered(partners.each_ref(), of);
+            let [partners, _] = of.ordered(partners.each_ref());
             let partner = |v: VertexId| other.repaired_vertex(partners[v.index()]?).ok();
             let topology = other.intrinsic().topology();
             let point =
@@ -191,7 +191,7 @@ impl<'a, S: Borrow<Surface>> Mapping<'a, S> {
     /// side, such as texture coordinates: `values` has three rows for each of its faces. No face here takes its values from both
     /// sides of a seam, across which those of neighboring faces differ. `None` between a part and a whole.
     pub fn corners(&self, of: Side, values: &Matrix) -> Option<PointMap> {
-        let [own, other] = ordered(self.shapes.map(|shape| shape.surface()), of);
+        let [own, other] = of.ordered(self.shapes.map(|shape| shape.surface()));
         if self.partners.is_some() {
             return None;
         }
@@ -208,17 +208,9 @@ impl<'a, S: Borrow<Surface>> Mapping<'a, S> {
     }
 
     fn mapped(&self, of: Side, elements: MapElements<'_>) -> Vec<SurfacePoint> {
-        let [_, target] = ordered(self.shapes.map(|shape| shape.surface()), of);
+        let [_, target] = of.ordered(self.shapes.map(|shape| shape.surface()));
         let topology = target.intrinsic().topology();
         mapped_points(self.shapes.map(|shape| &shape.shape), self.functional, of, elements, topology)
-    }
-}
-
-/// A pair, with the one of a side first.
-fn ordered<T>([first, second]: [T; 2], side: Side) -> [T; 2] {
-    match side {
-        Side::First => [first, second],
-        Side::Second => [second, first],
     }
 }
 

@@ -86,8 +86,8 @@ pub(crate) fn part_maps(search: &MapSearch<'_>, side: Side) -> Result<Vec<Surfac
     let start = |anchors: &Vec<(usize, usize)>| sketch(&placed(&sides, anchors, SKETCHED), 1.0);
     let mut found: Vec<ScoredPlaces> = starts.par_iter().map(start).collect();
     if let Some(mirror) = &sides.whole.mirrors(budget)?.sides {
-        let itself = MapSearch { a: sides.whole, b: sides.whole, ..*search };
-        let mirror = mirror.sample_maps(&itself.samples(SKETCHED.ys)).forth;
+        let itself = MapSearch { shapes: [sides.whole; 2], ..*search };
+        let [mirror, _] = mirror.sample_maps(&itself.samples(SKETCHED.ys));
         let best = [MapKind::Direct, MapKind::Mirrored].map(|kind| {
             let of_kind = found.iter().filter(|found| found.kind() == kind);
             of_kind.min_by(|a, b| a.score.total_cmp(&b.score))
@@ -150,27 +150,21 @@ fn refined(sides: &Sides<'_>, sketch: &ScoredPlaces, confidence: f64) -> Result<
     let id = |v: &usize| VertexId::from(*v);
     let onto_whole = images.iter().map(|w| Some(id(w))).collect();
     let onto_part = partners.iter().zip(&matched).map(|(v, matched)| matched.then(|| id(v))).collect();
-    // In the order of the surfaces.
-    let mut shapes = [sides.part, sides.whole];
-    let (mut units, mut maps, mut partners) =
-        ([sides.scale, 1.0], [images, partners], [onto_whole, onto_part]);
     if sides.side == Side::Second {
-        shapes.reverse();
-        units.reverse();
-        maps.reverse();
-        partners.reverse();
         functional = functional.transpose() * sides.scale.powi(2);
     }
-    let [vertices, _] = &maps;
+    let side = sides.side;
+    let (shapes, units) = (side.ordered([sides.part, sides.whole]), side.ordered([sides.scale, 1.0]));
+    let [vertices, _] = side.ordered([images, partners]);
     Ok(SurfaceMap {
         kind: sketch.kind(),
         distortion: fine.distortion,
         agreement,
         confidence,
         vertices: vertices.iter().map(|v| Some(id(v))).collect(),
-        vertex_confidence: vertex_confidence(shapes, units, vertices)?,
+        vertex_confidence: vertex_confidence(shapes, units, &vertices)?,
         functional,
-        part: Some(PartOfWhole { part: sides.side, covered, partners }),
+        part: Some(PartOfWhole { part: side, covered, partners: side.ordered([onto_whole, onto_part]) }),
         landmarks: Vec::new(),
         alternative: None,
     })

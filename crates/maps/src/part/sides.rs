@@ -59,8 +59,8 @@ pub(super) struct Sides<'a> {
 impl<'a> Sides<'a> {
     /// `None` unless the part has a cut.
     pub(super) fn new(search: &MapSearch<'a>, side: Side) -> Result<Option<Self>, DescriptorError> {
-        let MapSearch { a, b, known, params, .. } = *search;
-        let [part, whole] = if side == Side::First { [a, b] } else { [b, a] };
+        let MapSearch { shapes, known, params, .. } = *search;
+        let [part, whole] = side.ordered(shapes);
         let Some(from_cut) = &part.from_cut else { return Ok(None) };
         let scale = part.size / whole.size;
         let to_samples = whole.distances_to(&whole.samples)?;
@@ -83,7 +83,7 @@ impl<'a> Sides<'a> {
     /// Corresponding samples of the part and of the whole: those nearest to corresponding vertices of both surfaces.
     fn sampled(&self, pairs: impl Iterator<Item = [VertexId; 2]>) -> impl Iterator<Item = [usize; 2]> {
         pairs.map(|[x, y]| {
-            let [x, y] = if self.side == Side::First { [x, y] } else { [y, x] };
+            let [x, y] = self.side.ordered([x, y]);
             [self.part.nearest[x.index()], self.whole.nearest[y.index()]]
         })
     }
