@@ -6,17 +6,9 @@ use nalgebra::DVector;
 use surface::EdgeId;
 use surface::laplacian::Laplacian;
 
-use descriptors::LaplaceSpectrum;
-
 /// Times of heat by which a function is smoothed, at unit area. A convention: bumps of 3 to 10 % of the square root of the
 /// area are left.
 pub(crate) const TIMES: [f64; 3] = [0.001, 0.003, 0.01];
-
-/// Coefficients of the mean curvature, positive where the surface bulges outwards, in the eigenfunctions; `bends` are those of the
-/// surface.
-pub(crate) fn mean_curvature(bends: &DVector<f64>, spectrum: &LaplaceSpectrum) -> DVector<f64> {
-    spectrum.vectors.transpose() * bends
-}
 
 /// A function at some points, such as the mean curvature, smoothed by heat: a row for each point, a column for each time.
 /// `coefficients` are those of the function in the eigenfunctions, `values` the eigenvalues and `vectors` the eigenfunctions at
@@ -87,6 +79,7 @@ pub(crate) fn mismatch(x: &[f64], y: &[f64], partners: &[usize]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use descriptors::LaplaceSpectrum;
     use mesh::shapes;
 
     #[test]
@@ -105,7 +98,7 @@ mod tests {
     fn a_ball_bulges_evenly_and_a_ring_bulges_outside() {
         let of = |mesh: &TriMesh| {
             let spectrum = LaplaceSpectrum::new(&mesh.intrinsic(), 60, &()).unwrap();
-            smoothed(&mean_curvature(&bends(mesh), &spectrum), &spectrum.values, &spectrum.vectors, 1.0)
+            smoothed(&(spectrum.vectors.transpose() * bends(mesh)), &spectrum.values, &spectrum.vectors, 1.0)
         };
         let ball = of(&shapes::icosphere(4));
         assert!(ball.min() > 0.0 && ball.max() < 1.05 * ball.min(), "{} to {}", ball.min(), ball.max());

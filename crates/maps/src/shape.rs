@@ -7,7 +7,7 @@ use mesh::{TriMesh, outward};
 use nalgebra::{DVector, Point3};
 use rigid::PointSet;
 
-use crate::curvature::{TIMES, bends, fine_curvature, mean_curvature, smoothed};
+use crate::curvature::{TIMES, bends, fine_curvature, smoothed};
 use crate::functional::FunctionalMaps;
 use crate::nearest_rows::nearest_in_cells;
 use crate::operators::{FITTED, Operators};
@@ -43,7 +43,8 @@ pub struct MapShape {
     pub(crate) size: f64,
     /// `None` if the surface cannot be oriented.
     pub(crate) oriented: Option<Oriented>,
-    /// Coefficients of the mean curvature in the eigenfunctions; `None` if the surface has no outside.
+    /// Coefficients of the mean curvature, positive where the surface bulges outwards, in the eigenfunctions; `None` if it has no
+    /// outside.
     pub(crate) mean_curvature: Option<DVector<f64>>,
     /// The mean curvature at all vertices, smoothed as little as its noise allows.
     pub(crate) fine_curvature: Option<Vec<f64>>,
@@ -108,7 +109,7 @@ impl MapShape {
         let bends = outward.as_ref().map(bends);
         let both = outward.as_ref().zip(bends.as_ref());
         let fine_curvature = both.map(|(outward, bends)| fine_curvature(outward, bends)).transpose()?;
-        let mean_curvature = bends.map(|bends| mean_curvature(&bends, &spectrum));
+        let mean_curvature = bends.map(|bends| spectrum.vectors.transpose() * bends);
         let smooth = |curvature| smoothed(curvature, &spectrum.values, &spectrum.vectors, 1.0);
         let curvatures = mean_curvature.as_ref().map(smooth);
         let curvature = curvatures.as_ref().map(|columns| samples.iter().map(|&v| columns[(v, 0)]).collect());

@@ -30,8 +30,7 @@ fn neighbors(sides: &Sides<'_>) -> Vec<Vec<(f64, usize)>> {
 /// The vertex of the whole for each vertex of the part: near the place of its sample, the one whose distances from the images
 /// of the landmarks fit best.
 pub(super) fn all_vertices(sides: &Sides<'_>, places: &[usize]) -> Result<Vec<usize>, DescriptorError> {
-    let (part, whole) = (sides.part, sides.whole);
-    let near = neighbors(sides);
+    let (part, whole, near) = (sides.part, sides.whole, neighbors(sides));
     let n = sides.in_part.nrows();
     let images: Vec<usize> = (0..n).map(|l| sides.whole.samples[places[l]]).collect();
     // A row for each image, a column for each vertex of the whole.
@@ -54,8 +53,7 @@ pub(super) fn all_vertices(sides: &Sides<'_>, places: &[usize]) -> Result<Vec<us
 
 /// The vertex of the part nearest to each vertex of the whole, with the images of all vertices of the part.
 pub(super) fn onto_part(sides: &Sides<'_>, images: &[usize]) -> Result<Coverage, DescriptorError> {
-    let whole = sides.whole;
-    let near = neighbors(sides);
+    let (whole, near) = (sides.whole, neighbors(sides));
     let distances = whole.all_distances()?;
     let mut in_cell = vec![Vec::new(); sides.in_whole.nrows()];
     images.iter().enumerate().for_each(|(v, w)| in_cell[whole.nearest[*w]].push(v));
