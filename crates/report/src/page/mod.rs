@@ -10,16 +10,13 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use base::files::write_bytes;
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
-use sha2::{Digest, Sha256};
 
 use self::html::{outcome, paragraphs};
 use crate::error::ReportError;
 use crate::figure::dark_rules;
 pub use crate::markup::escape;
 use crate::record::{Expectation, FigurePanels, Record};
-use crate::viewer::{plotly_js, viewer_js};
+use crate::viewer::{plotly_js, script_hash, viewer_js};
 
 /// Name of the page in the folder of results.
 pub const FILE: &str = "report.html";
@@ -149,7 +146,7 @@ fn page(header: &str, sections: &[ShownSection<'_>], main: &str, closing: &str) 
         true => vec![plotly_js(), viewer_js(), include_str!("gallery.js")],
         false => vec![],
     };
-    let hash = |script: &&str| format!(" 'sha256-{}'", STANDARD.encode(Sha256::digest(script)));
+    let hash = |script: &&str| format!(" {}", script_hash(script));
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\

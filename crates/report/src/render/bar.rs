@@ -6,10 +6,10 @@ use mesh::TriMesh;
 use super::coloring::{Coloring, ISOLINE_LIGHT};
 use super::draw::render;
 use super::options::RenderOptions;
-use super::text::{Label, empty, paint, type_size, write_labels};
+use super::text::{Label, empty, paint, type_size, width_of, write_labels};
 use crate::color::{ColorMap, from_linear, to_linear, value_range};
 use crate::error::ReportError;
-use crate::figure::{INK, PlotAxis, bar_labels, scaled_text, text_width};
+use crate::figure::{PlotAxis, bar_labels};
 use crate::image::RgbaImage;
 
 /// Draws like [`render`], with labels at points, and with a color bar of this name and its ticks to the right of the mesh, in
@@ -28,7 +28,7 @@ pub fn annotated(
 ) -> Result<RgbaImage, ReportError> {
     let bar = bar.and_then(|name| ColorBar::new(options, name));
     let taken = bar.as_ref().map_or(0, |bar| bar.width);
-    let room = RenderOptions { width: options.width.clamp(1, 8192) - taken, ..options.clone() };
+    let room = RenderOptions { width: options.size()[0] - taken, ..options.clone() };
     let mut image = render(mesh, &room, observer)?;
     write_labels(&mut image, mesh, &room, labels, &observer.budget())?;
     let Some(bar) = bar else { return Ok(image) };
@@ -66,7 +66,7 @@ impl ColorBar {
         let [low, high] = range.or_else(|| value_range(values))?;
         // The range of the surface's colors if there is only one value.
         let high = if high > low { high } else { low + 1.0 };
-        let size = [options.width, options.height].map(|side| side.clamp(1, 8192));
+        let size = options.size();
         let high_side = f64::from(size[1]);
         let em = type_size(size);
         if !(high - low).is_finite() || em * 8.0 > high_side {
@@ -75,9 +75,7 @@ impl ColorBar {
         let height = (high_side * 0.72).round();
         let most = (height / (2.5 * em)).clamp(2.0, 8.0) as usize;
         let axis = PlotAxis::bar(name, "", [low, high], most);
-        // Measured large, as plotters rounds to whole pixels.
-        let style = scaled_text(em, INK, 8);
-        let numbers = axis.ticks.iter().map(|(_, text)| text_width(text, &style) / 8.0).fold(0.0, f64::max);
+        let numbers = axis.ticks.iter().map(|(_, text)| width_of(text, em)).fold(0.0, f64::max);
         // The bar, ticks, numbers and name.
         let width = (em * (1.0 + 0.8 + 2.4) + numbers.ceil()) as u32;
         let top = ((high_side - height) / 2.0).round() as usize;

@@ -29,7 +29,7 @@ pub fn render(
     budget.check()?;
     let mesh = &drawable(mesh);
     let samples = options.supersampling.clamp(1, 4);
-    let size = [options.width, options.height].map(|side| side.clamp(1, 8192) * samples);
+    let size = options.size().map(|side| side * samples);
     let camera = Camera::fit(mesh, &options.view, size);
     let buffer = DepthBuffer::draw(mesh, &camera, size, &budget)?;
     let normals = corner_normals(mesh, &camera, options.crease.clamp(0.0, 90.0));

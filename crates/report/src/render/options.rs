@@ -43,6 +43,13 @@ impl Default for RenderOptions {
     }
 }
 
+impl RenderOptions {
+    /// Width and height, clamped.
+    pub(super) fn size(&self) -> [u32; 2] {
+        [self.width, self.height].map(|side| side.clamp(1, 8192))
+    }
+}
+
 /// What is behind the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Background {

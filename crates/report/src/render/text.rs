@@ -116,7 +116,7 @@ pub(super) fn type_size(size: [u32; 2]) -> f64 {
 }
 
 /// The width of a text in pixels.
-fn width_of(text: &str, size: f64) -> f64 {
+pub(super) fn width_of(text: &str, size: f64) -> f64 {
     // Measured large, as plotters rounds to whole pixels.
     text_width(text, &scaled_text(size, INK, 8)) / 8.0
 }

@@ -18,6 +18,7 @@ use flate2::read::GzDecoder;
 use crate::color::{hex, perceptual_stops};
 
 pub use geometry::Geometry;
+pub(crate) use scene::script_hash;
 pub use scene::{scene_page, scene_scripts};
 
 /// The viewer: a script that defines the global `canonform` and uses `Plotly` from its first view on.

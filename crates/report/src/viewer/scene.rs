@@ -28,7 +28,7 @@ pub fn scene_page(geometry: &Geometry, title: &str) -> String {
          .canonform-title{{margin:0}}.canonform-fallback{{position:absolute;bottom:0}}</style></head>\n\
          <body><div id=\"view\"></div>\n{islands}{scene}<script>{start}</script></body></html>\n",
         title = escape(title),
-        start_hash = hash(start),
+        start_hash = script_hash(start),
         scene = packed("scene", &scene),
     )
 }
@@ -43,10 +43,11 @@ static SCRIPTS: LazyLock<[String; 2]> = LazyLock::new(|| {
     // The bundle is packed already, and packing it again takes a second.
     let bundle = plotly_js().strip_prefix(PRELUDE).unwrap_or_default();
     let islands = [packed("prelude", PRELUDE), island("plotly", BUNDLE), packed("viewer", viewer_js())];
-    [islands.concat(), [PRELUDE, bundle, viewer_js()].map(hash).join(" ")]
+    [islands.concat(), [PRELUDE, bundle, viewer_js()].map(script_hash).join(" ")]
 });
 
-fn hash(script: &str) -> String {
+/// A script in a content-security policy.
+pub(crate) fn script_hash(script: &str) -> String {
     format!("'sha256-{}'", STANDARD.encode(Sha256::digest(script)))
 }
 
