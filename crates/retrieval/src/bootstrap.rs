@@ -43,16 +43,15 @@ pub fn bootstrap(scores: &QueryScores, labels: &Labels) -> ScoreIntervals {
     classes.retain(|queries| !queries.is_empty());
     let mut random = ChaCha8Rng::seed_from_u64(SEED);
     let mut means: [Vec<f64>; Scores::N] = std::array::from_fn(|_| Vec::with_capacity(RESAMPLES));
-    let weight = 1.0 / scores.of.len() as f64;
     for _ in 0..RESAMPLES {
         let mut total = [0.0; Scores::N];
         for queries in &classes {
             for _ in 0..queries.len() {
                 let drawn = &queries[below(&mut random, queries.len())];
-                total.iter_mut().zip(drawn).for_each(|(total, score)| *total += weight * score);
+                total.iter_mut().zip(drawn).for_each(|(total, score)| *total += score);
             }
         }
-        means.iter_mut().zip(total).for_each(|(means, mean)| means.push(mean));
+        means.iter_mut().zip(total).for_each(|(means, total)| means.push(total / scores.of.len() as f64));
     }
     means.iter_mut().for_each(|means| means.sort_by(f64::total_cmp));
     let tail = 0.5 * (1.0 - LEVEL);

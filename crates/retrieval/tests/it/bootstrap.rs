@@ -15,6 +15,7 @@ fn equal_scores_have_an_interval_of_one_point() {
         let mean = nn.iter().sum::<f64>() / 6.0;
         assert!((low - mean).abs() < 1e-12 && (high - mean).abs() < 1e-12 && low <= high && high <= 1.0);
     }
+    assert_eq!(interval(&["a"; 117], &[1.0; 117]), [1.0; 2]);
 }
 
 #[test]
