@@ -238,13 +238,13 @@ impl Prediction {
         if as_part {
             return words;
         }
-        words += &format!(", confidence {:.2}", self.confidence);
         if let [_, others @ ..] = &self.tally[..]
             && !others.is_empty()
         {
             let others: Vec<_> = others.iter().map(|o| format!("{} {}", o.label, o.votes)).collect();
             let split = if self.confidence < CLEAR { "; the vote is split" } else { "" };
-            words += &format!("{split}; other votes: {}", others.join(", "));
+            let share = 100.0 * self.confidence;
+            words += &format!(", {share:.0} % of their weight{split}; other votes: {}", others.join(", "));
         }
         words
     }
@@ -293,13 +293,19 @@ mod tests {
         type Row<'a> =
             (&'a [(&'a str, f64)], Option<f64>, Facts, Result<(&'a str, usize), Unknown>, &'a [&'a str]);
         let table: [Row<'_>; 12] = [
-            (near, None, closed(), Ok(("cat", 2)), &["cat, by 2 of 2 votes, confidence 1.00"]),
+            (near, None, closed(), Ok(("cat", 2)), &["cat, by 2 of 2 votes"]),
             // Classes of a collection may be narrower or wider than those of the metric.
             (near, Some(0.2), closed(), Err(Unknown::NothingNear), &["one class are below 0.200"]),
             (near, Some(9.0), open, Ok(("cat", 2)), &[]),
             (near, None, welded(1), Ok(("cat", 2)), &["probably has a shortcut", "in one place"]),
             (near, None, welded(3), Ok(("cat", 2)), &["in 3 places"]),
-            (people, None, closed(), Ok(("david", 2)), &["the vote is split; other votes: michael 2"]),
+            (
+                people,
+                None,
+                closed(),
+                Ok(("david", 2)),
+                &["2 of 4 votes, 50 % of their weight; the vote is split; other votes: michael 2"],
+            ),
             (far, Some(10.0), closed(), Ok(("cat", 1)), &[]),
             (
                 far,
