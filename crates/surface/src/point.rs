@@ -27,12 +27,12 @@ pub enum SurfacePoint {
 const ROUNDING: f64 = 1e-12;
 
 impl SurfacePoint {
-    #[must_use]
     /// The same point as a vertex if it is one, else as a point of an edge if it is on one, up to rounding.
+    #[must_use]
     pub fn simplified(self, mesh: &IntrinsicMesh) -> Self {
         let topology = mesh.topology();
         match self {
-            Self::Edge { edge, t } if t < ROUNDING || t > 1.0 - ROUNDING => {
+            Self::Edge { edge, t } if t.min(1.0 - t) < ROUNDING => {
                 Self::Vertex(topology.edges()[edge.index()][usize::from(t > 0.5)])
             }
             Self::Face { face, barycentric } => {
