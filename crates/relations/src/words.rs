@@ -186,6 +186,7 @@ impl Relation {
         let [copies, all] = [found, components].map(in_words);
         match (self.kind, found) {
             (RelationKind::Copies, _) => format!("{whole} is {copies} copies of {part}"),
+            (_, 1) if components == 1 => format!("{part} is part of {whole}, its only large component"),
             (_, 1) => format!("{part} is part of {whole}, one of its {all} components"),
             _ => format!("{whole} has {copies} copies of {part} among its {all} components"),
         }

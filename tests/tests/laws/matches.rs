@@ -219,6 +219,9 @@ fn copies_on_a_plate_are_counted() {
     let [cat, other] = [Family::Cat, Family::Centaur].map(|family| pose(family, 0));
     let single = geometry(&cat);
     let ball = testkit::moved(&shapes::icosphere(2), |p| p * 0.2 * cat.root_of_area());
+    let dust = at(&testkit::moved(&ball, |p| p * 0.01), 0.0, 30.0);
+    let found = related(&single, &geometry(&shapes::disjoint(&[cat.clone(), dust]))).named("cat", "scan");
+    assert!(found.to_string().starts_with("cat is part of scan, its only large component"), "{found}");
     for decimated in [false, true] {
         let copy = if decimated { Damage::Decimate(0.5).apply(&cat, 1) } else { cat.clone() };
         let copies = |n: usize| (0..n).map(|i| at(&Damage::Move.apply(&copy, i as u64), 9.0 * i as f64, 0.0));
