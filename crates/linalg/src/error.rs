@@ -37,19 +37,6 @@ pub enum LinalgError {
     /// The iterative decomposition of a matrix of this order did not converge.
     #[error("the eigenvalue decomposition of a {0} x {0} matrix did not converge; check its entries for NaN")]
     NotConverged(usize),
-    /// Some eigenvalues exist but were not found.
-    #[error(
-        "{missing} eigenvalues of a sparse {n} x {n} matrix were not found, {found} were; they are multiple or the \
-         matrix is ill-conditioned: remove degenerate elements or request fewer"
-    )]
-    MissedEigenvalues {
-        /// Order of the matrix.
-        n: usize,
-        /// Number of eigenvalues that were not found.
-        missing: usize,
-        /// Number of eigenvalues found in the same range.
-        found: usize,
-    },
     /// A sparse matrix has no Cholesky factor, or the factor does not fit into memory.
     #[error(
         "the sparse {n} x {n} matrix cannot be factorized: {reason}; add a larger multiple of a positive diagonal to \
