@@ -89,9 +89,10 @@ proptest! {
             let solvers: [&dyn DistanceSolver; 2] = [&marching, &dijkstra];
             let [marched, along_edges] = solvers.map(|solver| solver.distances(source).unwrap());
             let sources = [Source::vertex(source)];
-            for field in [&exact, &marched, &nonsense, &vec![0.0; n]] {
+            // Where distances lead nowhere, every path takes as long as its limit of rays.
+            for (field, most) in [(&exact, n), (&marched, n), (&nonsense, 2), (&vec![0.0; n], 2)] {
                 let tracer = PathTracer::new(&surface, &sources, field, &());
-                for v in (0..n).filter(|v| along_edges[*v].is_finite()) {
+                for v in (0..n).rev().filter(|v| along_edges[*v].is_finite()).take(most) {
                     let path = tracer.path_to(vertex(v)).unwrap();
                     assert_path(&surface, &path, SurfacePoint::Vertex(source), vertex(v));
                     prop_assert!(path.length >= exact[v] - open, "{} {}", path.length, exact[v]);
