@@ -2,7 +2,7 @@
 
 use surface::{EdgeGraph, Frontier, IntrinsicMesh, SurfacePoint, VertexId};
 
-use super::Step;
+use super::step::Step;
 use crate::source::Source;
 
 /// The shortest paths along edges from the sources to all vertices.

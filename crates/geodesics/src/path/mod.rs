@@ -5,9 +5,11 @@
 //! | `field` | distances and their sources, which paths lead to |
 //! | `visibility` | the visible vertex over which the source is nearest |
 //! | `edges` | paths along edges, as a fallback |
+//! | `step` | a straight step of a path |
 
 mod edges;
 mod field;
+mod step;
 #[cfg(test)]
 mod tests;
 mod visibility;
@@ -22,6 +24,7 @@ use crate::flat::faces_around;
 use crate::source::Source;
 use edges::EdgeTree;
 use field::PathField;
+use step::Step;
 use visibility::nearest_visible;
 
 /// A path along the surface, straight in every face it crosses.
@@ -32,13 +35,6 @@ pub struct GeodesicPath {
     pub points: Vec<SurfacePoint>,
     /// Its length, in mesh units.
     pub length: f64,
-}
-
-/// A straight step of a path towards the source: where it leads, and its length.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Step {
-    to: SurfacePoint,
-    length: f64,
 }
 
 /// Limit of the bundles of rays followed for one path; some hundreds if the distances are exact.

@@ -2,8 +2,8 @@
 
 use surface::{FaceId, NearestFirst, SurfacePoint, VertexId};
 
-use super::Step;
 use super::field::PathField;
+use super::step::Step;
 use crate::flat::segment;
 use crate::plane::{PlanePoint, distance};
 use crate::sight::{Rays, SeenFace, faces_seen_from};
