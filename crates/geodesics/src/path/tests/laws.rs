@@ -89,8 +89,8 @@ proptest! {
             let solvers: [&dyn DistanceSolver; 2] = [&marching, &dijkstra];
             let [marched, along_edges] = solvers.map(|solver| solver.distances(source).unwrap());
             let sources = [Source::vertex(source)];
-            // Where distances lead nowhere, every path takes as long as its limit of rays.
-            for (field, most) in [(&exact, n), (&marched, n), (&nonsense, 2), (&vec![0.0; n], 2)] {
+            // Where distances are not exact, a path may take as long as its limit of rays.
+            for (field, most) in [(&exact, n), (&marched, 2), (&nonsense, 1), (&vec![0.0; n], 1)] {
                 let tracer = PathTracer::new(&surface, &sources, field, &());
                 for v in (0..n).rev().filter(|v| along_edges[*v].is_finite()).take(most) {
                     let path = tracer.path_to(vertex(v)).unwrap();
