@@ -69,7 +69,7 @@ pub struct Hit {
     #[serde(flatten)]
     pub order: Option<OrderedBy>,
     /// How the query and the shape are related: by descriptions and, if results are explained, by files and meshes. The
-    /// handedness is unknown. What is read from JSON is a relation by descriptions, to be [told](Hit::by_descriptions) again.
+    /// handedness is unknown. Of what is read from JSON, only the kind and the distances are there.
     #[serde(deserialize_with = "recorded")]
     pub relation: Relation,
     /// The numbers of the comparison with the query, if results are explained.
