@@ -3,7 +3,8 @@
 mod flow;
 mod system;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::OnceLock;
 
 use base::{Budget, Exceeded, Observer};
 use linalg::Matrix;
@@ -110,6 +111,8 @@ pub struct HeatMethod {
     step: Vec<u32>,
     /// The triangles and links; their vertices are given by their steps.
     elements: Vec<Element>,
+    /// The triangles at each vertex, once a source is not a vertex.
+    at_vertices: OnceLock<Rows<u32>>,
     bars: Vec<HeatBar>,
     system: System,
     scratch: Pool<Vec<f64>>,
@@ -163,6 +166,7 @@ impl HeatMethod {
             neighbors,
             step,
             elements,
+            at_vertices: OnceLock::new(),
             bars,
             system,
             scratch: Pool::default(),
@@ -183,9 +187,12 @@ impl HeatMethod {
             scratch.resize(2 * n * K, 0.0);
             let (u, phi) = scratch.split_at_mut(n * K);
             let (u, phi) = (u.as_chunks_mut::<K>().0, phi.as_chunks_mut::<K>().0);
-            for (lane, sources) in sets.iter().enumerate() {
-                for (vertex, share, _) in sources.iter().flat_map(|source| self.around(source)) {
-                    u[self.step[vertex] as usize][lane] += AMPLITUDE * share;
+            let around =
+                |sources: &&[Source]| sources.iter().flat_map(|source| self.around(source)).collect();
+            let around: Vec<Vec<(usize, f64, f64)>> = sets.iter().map(around).collect();
+            for (lane, around) in around.iter().enumerate() {
+                for (vertex, share, _) in around {
+                    u[self.step[*vertex] as usize][lane] += AMPLITUDE * share;
                 }
             }
             self.budget.check()?;
@@ -196,8 +203,8 @@ impl HeatMethod {
             self.budget.check()?;
             self.system.poisson.solve_ordered(phi);
             self.budget.check()?;
-            for ((lane, sources), column) in sets.iter().enumerate().zip(out.chunks_exact_mut(n)) {
-                self.read_lane(lane, sources, phi, column);
+            for ((lane, around), column) in around.iter().enumerate().zip(out.chunks_exact_mut(n)) {
+                self.read_lane(lane, around, phi, column);
                 column.iter_mut().for_each(|distance| *distance = within(*distance, max_distance));
             }
             Ok(())
@@ -221,7 +228,16 @@ impl HeatMethod {
         let mut around: Vec<(usize, f64, f64)> = seen.collect();
         let places = around.iter().enumerate().map(|(place, (v, ..))| (self.step[*v], place));
         let places: BTreeMap<u32, usize> = places.collect();
-        let held = self.elements.iter().find_map(|Element { vertices, triangle, .. }| {
+        let at_vertices = self.at_vertices.get_or_init(|| {
+            let corners = self.elements.iter().zip(0..);
+            Rows::collect(
+                self.step.len(),
+                corners.flat_map(|(element, i)| element.vertices.map(|v| (v as usize, i))),
+            )
+        });
+        let near: BTreeSet<u32> = places.keys().flat_map(|v| at_vertices.row(*v as usize)).copied().collect();
+        let held = near.into_iter().find_map(|i| {
+            let Element { vertices, triangle, .. } = &self.elements[i as usize];
             let [Some(a), Some(b), Some(c)] = vertices.map(|v| places.get(&v).copied()) else { return None };
             let straight = [a, b, c].map(|place| around[place].2);
             Some(([a, b, c], point_within([triangle.base, triangle.x, triangle.y], straight)?))
@@ -236,11 +252,17 @@ impl HeatMethod {
     ///
     /// At a source, the direction of flow is undefined and the potential is wrong by a good part of an edge. So it is
     /// shifted to agree, in the mean of relative errors, with the straight distances to the vertices around.
-    fn read_lane<const K: usize>(&self, lane: usize, sources: &[Source], phi: &[[f64; K]], out: &mut [f64]) {
+    fn read_lane<const K: usize>(
+        &self,
+        lane: usize,
+        around: &[(usize, f64, f64)],
+        phi: &[[f64; K]],
+        out: &mut [f64],
+    ) {
         let potential = |v: usize| phi[self.step[v] as usize][lane];
         out.fill(f64::INFINITY);
-        for (v, _, straight) in sources.iter().flat_map(|source| self.around(source)) {
-            out[v] = out[v].min(straight);
+        for (v, _, straight) in around {
+            out[*v] = out[*v].min(*straight);
         }
         let component = |v| self.components.of(VertexId::from(v));
         let mut shifts = vec![Shift::default(); self.components.count];
