@@ -90,7 +90,11 @@ pub fn read(path: &Path) -> Result<TriMesh, MeshError> {
 /// # Errors
 /// As [`read()`]; [`Fault::OverLimit`] beyond `limits`.
 pub fn read_file(path: &Path, source: &dyn FileSource, limits: &ReadLimits) -> Result<MeshFile, MeshError> {
-    let format = Format::of(path)?;
+    let format = Format::of(path).or_else(|unknown| {
+        // That a file is missing is told first.
+        source.open(path)?;
+        Err(unknown)
+    })?;
     read_files(format, format.files(path, source), limits, |file, check| {
         if file == path || source.holds(file) {
             return load(source, file, check);
