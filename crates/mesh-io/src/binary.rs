@@ -39,7 +39,6 @@ impl Scalar {
     }
 
     /// The number at the start of `bytes`, where 64-bit integers are rounded; `None` if there are too few bytes.
-    #[inline]
     pub(crate) fn decode(self, order: ByteOrder, bytes: &[u8]) -> Option<f64> {
         macro_rules! decode {
             ($type:ty) => {{
@@ -76,20 +75,17 @@ pub(crate) struct Bytes<'a> {
 }
 
 impl<'a> Bytes<'a> {
-    #[inline]
     pub(crate) fn new(bytes: &'a [u8], at: usize, order: ByteOrder) -> Self {
         Self { rest: bytes.get(at..).unwrap_or_default(), at, order }
     }
 
     /// The next bytes; `None`, and nothing is taken, if there are fewer.
-    #[inline]
     pub(crate) fn take(&mut self, length: usize) -> Option<&'a [u8]> {
         let (taken, rest) = self.rest.split_at_checked(length)?;
         (self.rest, self.at) = (rest, self.at + length);
         Some(taken)
     }
 
-    #[inline]
     pub(crate) fn number(&mut self, scalar: Scalar) -> Option<f64> {
         scalar.decode(self.order, self.take(scalar.size())?)
     }

@@ -87,7 +87,7 @@ impl VertexField<'_> {
             && self.name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
         match is_word && !["x", "y", "z", "red", "green", "blue"].contains(&self.name) {
             true => Ok(()),
-            false => Err(MeshError::FieldName { name: self.name.to_owned() }),
+            false => Err(MeshError::FieldName(self.name.to_owned())),
         }
     }
 }
@@ -128,7 +128,10 @@ impl ReadLimits {
     pub(crate) fn check(&self, n_vertices: u64, n_faces: u64) -> Result<(), Fault> {
         let check = |items, count, limit, max| match count {
             _ if count <= limit => Ok(()),
-            _ if limit >= max => Err(Fault::TooLarge { items, count, limit: max }),
+            _ if limit >= max => {
+                let text = format!("too many {items}: {count} (maximum {max}); simplify the mesh");
+                Err(Fault::Malformed(text))
+            }
             _ => Err(Fault::OverLimit { items, limit }),
         };
         check("vertices", n_vertices, self.max_vertices.min(MAX_VERTICES), MAX_VERTICES)?;

@@ -147,7 +147,7 @@ fn load(source: &dyn FileSource, path: &Path, check: Check<'_>) -> Result<Vec<u8
 ///
 /// # Errors
 /// As [`read()`]; [`Fault::OverLimit`] beyond `limits`, which bound the bytes of the stream too, and
-/// [`Fault::Unsupported`] for a mesh of more than one file.
+/// a fault for a mesh of more than one file.
 ///
 /// ```
 /// use std::path::Path;

@@ -39,7 +39,7 @@ impl Polygons {
     ) -> Result<(), Fault> {
         limits.check(0, (self.faces.len() + corners.len().saturating_sub(2)) as u64)?;
         match *corners {
-            [] | [_] | [_, _] => return Err(Fault::TooFewCorners { corners: corners.len() }),
+            [] | [_] | [_, _] => return Err(Fault::too_few_corners(corners.len())),
             [a, b, c] => self.faces.push([a, b, c]),
             _ => self.cut(positions, corners),
         }
@@ -181,7 +181,9 @@ impl Outline {
 pub(crate) fn finite(position: impl Into<Point3<f64>>, vertex: usize) -> Result<Point3<f64>, Fault> {
     let position = position.into();
     match position.iter().find(|x| !x.is_finite()) {
-        Some(&value) => Err(Fault::NonFinite { vertex: vertex as u64, value }),
+        Some(value) => Err(Fault::Malformed(format!(
+            "vertex {vertex} has the coordinate {value}; correct the coordinate or remove the vertex"
+        ))),
         None => Ok(position),
     }
 }
@@ -256,7 +258,7 @@ impl<'a> Assembly<'a> {
 pub(crate) fn finish(mesh: TriMesh, limits: &ReadLimits) -> Result<MeshFile, Located> {
     let (n_vertices, n_faces) = (mesh.n_vertices(), mesh.n_faces());
     if n_faces == 0 && n_vertices < MIN_POINTS {
-        return Err(Fault::NoFaces { n_vertices }.whole());
+        return Err(Fault::no_faces(n_vertices as u64).whole());
     }
     limits.check(n_vertices as u64, n_faces as u64).map_err(Fault::whole)?;
     Ok(MeshFile { mesh, ..MeshFile::default() })

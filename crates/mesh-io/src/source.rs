@@ -141,10 +141,10 @@ fn damage(path: &Path, fault: MeshError) -> MeshError {
     use io::ErrorKind::{InvalidData, InvalidInput, UnexpectedEof};
     let fault = match fault {
         MeshError::Io(fault) if matches!(fault.source.kind(), InvalidInput | InvalidData | UnexpectedEof) => {
-            Fault::syntax("compressed data", fault.source.to_string())
+            Fault::syntax("compressed data", fault.source)
         }
         MeshError::File { fault: Fault::OverLimit { items: "bytes", limit }, .. } => {
-            Fault::DecompressionBomb { limit }
+            Fault::decompression_bomb(limit)
         }
         other => return other,
     };

@@ -111,7 +111,6 @@ impl<'a> Words<'a> {
 impl<'a> Iterator for Words<'a> {
     type Item = &'a [u8];
 
-    #[inline]
     fn next(&mut self) -> Option<&'a [u8]> {
         if self.rest.is_empty() && self.crosses_lines {
             self.row()?;

@@ -66,12 +66,9 @@ pub enum MeshError {
         n_vertices: usize,
     },
 
-    /// A coordinate is NaN or infinite.
-    #[error("vertex {vertex} has a coordinate that is not finite; correct it or remove the vertex")]
-    NonFinite {
-        /// The vertex.
-        vertex: usize,
-    },
+    /// A coordinate of this vertex is NaN or infinite.
+    #[error("vertex {0} has a coordinate that is not finite; correct it or remove the vertex")]
+    NonFinite(usize),
 
     /// A mesh so large or small that areas overflow or vanish.
     #[error(
@@ -99,24 +96,13 @@ pub enum MeshError {
         degenerate: usize,
     },
 
-    /// Too few points for a surface through them.
-    #[error(
-        "{n_distinct} different points without faces; a surface needs faces, or at least {least} points",
-        least = MIN_POINTS
-    )]
-    TooFewPoints {
-        /// Points at different places.
-        n_distinct: usize,
-    },
+    /// Too few points at different places for a surface through them.
+    #[error("{0} different points without faces; a surface needs faces, or at least {MIN_POINTS} points")]
+    TooFewPoints(usize),
 
-    /// Points that lie on no surface.
-    #[error(
-        "no two of the {n_points} points agree on a triangle; they do not lie on a surface, or are too sparse"
-    )]
-    NoSurface {
-        /// The points.
-        n_points: usize,
-    },
+    /// Points that lie on no surface, this many.
+    #[error("no two of the {0} points agree on a triangle; they do not lie on a surface, or are too sparse")]
+    NoSurface(usize),
 
     /// A format that is not written, or not with this content.
     #[error("{path}: {format} files cannot be written with {content}; use {supported}", path = path.display())]
@@ -142,15 +128,12 @@ pub enum MeshError {
         n_vertices: usize,
     },
 
-    /// A field that a PLY file cannot name.
+    /// A field that a PLY file cannot name so.
     #[error(
-        "`{name}` is not a valid name of a PLY property; use letters, digits and `_`, begin with a letter, \
+        "`{0}` is not a valid name of a PLY property; use letters, digits and `_`, begin with a letter, \
          and avoid x y z red green blue"
     )]
-    FieldName {
-        /// The name.
-        name: String,
-    },
+    FieldName(String),
 
     /// A coordinate that a format of single precision cannot hold.
     #[error(
@@ -250,115 +233,7 @@ pub enum Fault {
     #[error("the file is empty")]
     Empty,
 
-    /// The content is of another format.
-    #[error("this is not {expected} ({found}); correct the file name or export the mesh again")]
-    WrongFormat {
-        /// The format that the file name promises.
-        expected: &'static str,
-        /// The evidence.
-        found: String,
-    },
-
-    /// A feature of the format that the reader does not support.
-    #[error("{what}; {remedy}")]
-    Unsupported {
-        /// The feature.
-        what: String,
-        /// How to avoid it.
-        remedy: &'static str,
-    },
-
-    /// Less in the file than its header promises.
-    #[error(
-        "the header promises {promised} {items} but the file holds only {found}; \
-         it is truncated or its header is wrong"
-    )]
-    Truncated {
-        /// What is counted, such as `vertices`.
-        items: String,
-        /// Number in the header.
-        promised: u64,
-        /// Number in the file, or an upper bound of it.
-        found: u64,
-    },
-
-    /// The file ends early.
-    #[error("unexpected end of file: expected {expected}; the file may be truncated")]
-    CutShort {
-        /// What should follow.
-        expected: String,
-    },
-
-    /// More in the file than its header promises.
-    #[error("the file continues after the {promised} {items} that its header promises; correct the header")]
-    Leftover {
-        /// What is counted, such as `vertices`.
-        items: &'static str,
-        /// Number in the header.
-        promised: u64,
-    },
-
-    /// Text or data that the format does not allow here.
-    #[error("expected {expected}, found `{found}`; correct the file or export it again")]
-    Syntax {
-        /// What the format requires.
-        expected: &'static str,
-        /// What the file has.
-        found: String,
-    },
-
-    /// A coordinate that is NaN, infinite or too large for its type.
-    #[error("vertex {vertex} has the coordinate {value}; correct the coordinate or remove the vertex")]
-    NonFinite {
-        /// The vertex, counted as the format counts.
-        vertex: u64,
-        /// The coordinate.
-        value: f64,
-    },
-
-    /// A face refers to a vertex that does not exist.
-    #[error(
-        "a face refers to vertex {index}, but the vertices of the file run from {first} to {last}; \
-         correct or remove the face"
-    )]
-    IndexOutOfRange {
-        /// The index as written.
-        index: String,
-        /// Index of the first vertex: 0 or 1.
-        first: u64,
-        /// Index of the last vertex.
-        last: u64,
-    },
-
-    /// A face with fewer than three corners.
-    #[error("a face has {corners} corners but needs at least three; remove it")]
-    TooFewCorners {
-        /// Number of corners.
-        corners: usize,
-    },
-
-    /// A file without faces, and with too few vertices for a point cloud.
-    #[error(
-        "the file has {n_vertices} vertices but no faces; a surface needs faces, or at least {least} points",
-        least = MIN_POINTS
-    )]
-    NoFaces {
-        /// Number of vertices.
-        n_vertices: usize,
-    },
-
-    /// More vertices or faces than 32-bit indices can count.
-    #[error("too many {items}: {count} (maximum {limit}); simplify the mesh")]
-    TooLarge {
-        /// What is counted, such as `vertices`.
-        items: &'static str,
-        /// Number in the file.
-        count: u64,
-        /// Largest supported number.
-        limit: u64,
-    },
-
-    /// More vertices or faces than the reader was told to accept.
+    /// More vertices, faces or bytes than the reader was told to accept.
     #[error("the mesh exceeds the limit of {limit} {items}; simplify it or raise the limit")]
     OverLimit {
         /// What is counted, such as `vertices`.
@@ -367,45 +242,75 @@ pub enum Fault {
         limit: u64,
     },
 
-    /// Compressed data that grows out of proportion.
-    #[error(
-        "the compressed data grows beyond {limit} bytes, out of proportion to the file; \
-         the file is damaged or malicious: if it is neither, save it without compression"
-    )]
-    DecompressionBomb {
-        /// Largest decompressed size, in bytes.
-        limit: u64,
-    },
+    /// Any other fault, which only its message tells.
+    #[error("{0}")]
+    Malformed(String),
 }
 
 impl Fault {
     /// Text or data that the format does not allow here.
-    pub fn syntax(expected: &'static str, found: impl Into<String>) -> Self {
-        Self::Syntax { expected, found: found.into() }
+    pub fn syntax(expected: &str, found: impl fmt::Display) -> Self {
+        Self::Malformed(format!("expected {expected}, found `{found}`; correct the file or export it again"))
     }
 
     /// A feature of the format that the reader does not support.
-    pub fn unsupported(what: impl Into<String>, remedy: &'static str) -> Self {
-        Self::Unsupported { what: what.into(), remedy }
+    pub fn unsupported(what: impl fmt::Display, remedy: &str) -> Self {
+        Self::Malformed(format!("{what}; {remedy}"))
     }
 
-    /// Content of another format.
-    pub fn wrong_format(expected: &'static str, found: impl Into<String>) -> Self {
-        Self::WrongFormat { expected, found: found.into() }
+    /// Content of another format than the file name promises, and the evidence.
+    pub fn wrong_format(expected: &str, found: impl fmt::Display) -> Self {
+        Self::Malformed(format!(
+            "this is not {expected} ({found}); correct the file name or export the mesh again"
+        ))
     }
 
     /// A file that ends early.
-    pub fn cut_short(expected: impl Into<String>) -> Self {
-        Self::CutShort { expected: expected.into() }
+    pub fn cut_short(expected: &str) -> Self {
+        Self::Malformed(format!("unexpected end of file: expected {expected}; the file may be truncated"))
     }
 
     /// Less in the file than its header promises.
-    pub fn truncated(items: impl Into<String>, promised: u64, found: u64) -> Self {
-        Self::Truncated { items: items.into(), promised, found }
+    pub fn truncated(items: impl fmt::Display, promised: u64, found: u64) -> Self {
+        Self::Malformed(format!(
+            "the header promises {promised} {items} but the file holds only {found}; \
+             it is truncated or its header is wrong"
+        ))
+    }
+
+    /// More in the file than its header promises.
+    pub fn leftover(items: &str, promised: u64) -> Self {
+        Self::Malformed(format!(
+            "the file continues after the {promised} {items} that its header promises; correct the header"
+        ))
     }
 
     /// A face that refers to none of the vertices, which are counted from `first`.
-    pub fn no_vertex(index: String, first: u64, n_vertices: u64) -> Self {
-        Self::IndexOutOfRange { index, first, last: first.saturating_add(n_vertices).saturating_sub(1) }
+    pub fn no_vertex(index: impl fmt::Display, first: u64, n_vertices: u64) -> Self {
+        let last = first.saturating_add(n_vertices).saturating_sub(1);
+        Self::Malformed(format!(
+            "a face refers to vertex {index}, but the vertices of the file run from {first} to {last}; \
+             correct or remove the face"
+        ))
+    }
+
+    /// A face with fewer than three corners.
+    pub fn too_few_corners(corners: usize) -> Self {
+        Self::Malformed(format!("a face has {corners} corners but needs at least three; remove it"))
+    }
+
+    /// A file without faces, and with too few vertices for a point cloud.
+    pub fn no_faces(n_vertices: u64) -> Self {
+        Self::Malformed(format!(
+            "the file has {n_vertices} vertices but no faces; a surface needs faces, or at least {MIN_POINTS} points"
+        ))
+    }
+
+    /// Compressed data that grows out of proportion, beyond this many bytes.
+    pub fn decompression_bomb(limit: u64) -> Self {
+        Self::Malformed(format!(
+            "the compressed data grows beyond {limit} bytes, out of proportion to the file; \
+             the file is damaged or malicious: if it is neither, save it without compression"
+        ))
     }
 }

@@ -37,7 +37,7 @@ fn check_counts(n_vertices: usize, n_faces: usize) -> Result<(), MeshError> {
 /// [`MeshError::NonFinite`].
 pub fn check_finite<'a>(positions: impl IntoIterator<Item = &'a Point3<f64>>) -> Result<(), MeshError> {
     match positions.into_iter().position(|p| !p.iter().all(|x| x.is_finite())) {
-        Some(vertex) => Err(MeshError::NonFinite { vertex }),
+        Some(vertex) => Err(MeshError::NonFinite(vertex)),
         None => Ok(()),
     }
 }

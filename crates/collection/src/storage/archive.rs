@@ -150,7 +150,7 @@ impl Spool {
         let start = self.n_bytes;
         self.n_bytes += bytes.len() as u64;
         if self.n_bytes > self.limit {
-            return Err(Fault::DecompressionBomb { limit: self.limit });
+            return Err(Fault::decompression_bomb(self.limit));
         }
         self.file.write_all(bytes).map_err(|error| cannot_keep(&error))?;
         Ok(start)

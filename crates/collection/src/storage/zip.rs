@@ -57,7 +57,7 @@ fn read(mut archive: ZipArchive<Window>, at: usize, most: u64) -> Result<Vec<u8>
         .read_to_end(&mut bytes)
         .map_err(|error| Fault::syntax("compressed data", error.to_string()))?;
     match bytes.len() as u64 > limit {
-        true => Err(Fault::DecompressionBomb { limit }),
+        true => Err(Fault::decompression_bomb(limit)),
         false => Ok(bytes),
     }
 }

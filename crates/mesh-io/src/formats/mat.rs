@@ -70,10 +70,8 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
         if kind == COMPRESSED {
             let read = ZlibDecoder::new(data).take(limit).read_to_end(&mut content);
             let end = match read {
-                Err(e) if e.kind() != io::ErrorKind::UnexpectedEof => {
-                    Fault::syntax("compressed data", e.to_string())
-                }
-                _ if content.len() as u64 == limit => Fault::DecompressionBomb { limit },
+                Err(e) if e.kind() != io::ErrorKind::UnexpectedEof => Fault::syntax("compressed data", e),
+                _ if content.len() as u64 == limit => Fault::decompression_bomb(limit),
                 _ => cut_short(),
             };
             variable = Elements::new(&content, 0, order, end);
@@ -267,7 +265,7 @@ fn mesh_of(fields: Fields, at: usize, limits: &ReadLimits) -> Result<MeshFile, L
     limits.check(n as u64, triv.rows as u64).at_byte(at)?;
     let vertex = |value: f64| match value.fract() == 0.0 && (1.0..=n as f64).contains(&value) {
         true => Ok(VertexId(value as u32 - 1)),
-        false => Err(Fault::no_vertex(value.to_string(), 1, n as u64).at_byte(at)),
+        false => Err(Fault::no_vertex(value, 1, n as u64).at_byte(at)),
     };
     let mut mesh = TriMesh::default();
     for i in 0..n {

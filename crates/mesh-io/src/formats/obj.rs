@@ -67,7 +67,7 @@ impl Statements {
                 (Some(&b"v"), 5) => (0, 5),
                 (Some(&b"v"), _) => (0, 4),
                 (Some(&b"f"), n @ 4..) => (1, n),
-                (Some(&b"f"), n) => return Err(Fault::TooFewCorners { corners: n - 1 }.in_line(line.number)),
+                (Some(&b"f"), n) => return Err(Fault::too_few_corners(n - 1).in_line(line.number)),
                 _ => continue,
             };
             counts[kind] += 1;

@@ -62,7 +62,7 @@ fn parse_words(bytes: &[u8], crosses_lines: bool, limits: &ReadLimits) -> Result
         polygons.push(&positions, &corners, limits).in_line(line.number)?;
     }
     match words.row() {
-        Some(line) => Err(Fault::Leftover { items: "faces", promised: n_faces }.in_line(line.number)),
+        Some(line) => Err(Fault::leftover("faces", n_faces).in_line(line.number)),
         None => polygons.finish(positions, limits),
     }
 }

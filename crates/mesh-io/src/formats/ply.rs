@@ -50,7 +50,7 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
             if is_vertex {
                 positions.push(finite(p, row as usize).at(place)?);
             } else if let Some(index) = outside {
-                return Err(Fault::no_vertex(index.to_string(), 0, n_vertices as u64).at(place));
+                return Err(Fault::no_vertex(index, 0, n_vertices as u64).at(place));
             } else if is_face {
                 polygons.push(&positions, &corners, limits).at(place)?;
             }
@@ -62,7 +62,7 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
     };
     if let Some(place) = leftover {
         let promised = header.elements.iter().map(|element| element.count).sum();
-        return Err(Fault::Leftover { items: "elements", promised }.at(place));
+        return Err(Fault::leftover("elements", promised).at(place));
     }
     let mut properties = header.elements.into_iter().flat_map(|element| element.properties);
     let field = properties.find(|property| property.role == Role::Field);
@@ -210,7 +210,7 @@ impl Header {
             return unsupported("the faces are strips of triangles");
         }
         if n_faces == 0 && vertex.count < MIN_POINTS as u64 {
-            return Err(Fault::NoFaces { n_vertices: vertex.count as usize });
+            return Err(Fault::no_faces(vertex.count));
         }
         if face_at.is_some_and(|face_at| face_at < vertex_at) {
             return unsupported("the faces come before the vertices");

@@ -17,8 +17,8 @@ pub(super) fn check_start(start: &[u8], size: Option<u64>) -> Result<(), Located
     };
     match size.map(|size| (size - PREFIX as u64) / TRIANGLE as u64) {
         Some(found) if found < promised => Err(Fault::truncated("triangles", promised, found).whole()),
-        Some(found) if found > promised => Err(Fault::Leftover { items: "triangles", promised }.whole()),
-        _ if promised == 0 => Err(Fault::NoFaces { n_vertices: 0 }.whole()),
+        Some(found) if found > promised => Err(Fault::leftover("triangles", promised).whole()),
+        _ if promised == 0 => Err(Fault::no_faces(0).whole()),
         _ => Ok(()),
     }
 }

@@ -28,7 +28,7 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
     let found = positions.len() as u64;
     match promised {
         Some(promised) if promised > found => Err(Fault::truncated("points", promised, found).whole()),
-        Some(promised) if promised < found => Err(Fault::Leftover { items: "points", promised }.whole()),
+        Some(promised) if promised < found => Err(Fault::leftover("points", promised).whole()),
         _ => finish(TriMesh { positions, faces: Vec::new() }, limits),
     }
 }

@@ -175,14 +175,7 @@ fn empty_and_foreign_files_are_errors_in_every_format() {
         }
         let picture = b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR and so on \xff\xfe\xfd";
         let fault = fault_of(name, picture);
-        let is_expected = matches!(
-            fault,
-            Fault::WrongFormat { .. }
-                | Fault::Syntax { .. }
-                | Fault::NoFaces { .. }
-                | Fault::Unsupported { .. }
-        );
-        assert!(is_expected, "{name}: {fault:?}");
+        assert!(matches!(fault, Fault::Malformed(_)), "{name}: {fault:?}");
     }
 }
 
@@ -432,8 +425,8 @@ fn compressed_files_are_read_within_their_limits() {
         bomb.write_all(&vec![b'\n'; 1 << 20]).unwrap();
     }
     fs::write(&gzip, bomb.finish().unwrap()).unwrap();
-    let error = read(&gzip).unwrap_err();
-    assert!(matches!(&error, MeshError::File { fault: Fault::DecompressionBomb { .. }, .. }), "{error}");
+    let error = read(&gzip).unwrap_err().to_string();
+    assert!(error.contains("out of proportion to the file"), "{error}");
 }
 
 fn gunzip(bytes: &[u8]) -> std::io::Result<String> {

@@ -113,7 +113,7 @@ pub fn triangulate_points(
     let scaled: Vec<Point3<f64>> = points.iter().map(|p| p / unit).collect();
     let (distinct, of_point) = without_copies(&scaled);
     if distinct.len() < MIN_POINTS {
-        return Err(MeshError::TooFewPoints { n_distinct: distinct.len() });
+        return Err(MeshError::TooFewPoints(distinct.len()));
     }
     let smooth = smooth::smooth(distinct.iter().map(|&i| scaled[i]).collect(), &budget)?;
     budget.check()?;
@@ -121,7 +121,7 @@ pub fn triangulate_points(
     budget.check()?;
     let faces = select::agreed(&stars);
     if faces.is_empty() {
-        return Err(MeshError::NoSurface { n_points: points.len() });
+        return Err(MeshError::NoSurface(points.len()));
     }
     let stands = stand_ins(&faces, &smooth.points, smooth.spacing);
 

@@ -203,7 +203,7 @@ impl<'a> Data<'a> {
             _ if !matches!(scalar, Scalar::U8 | Scalar::U16 | Scalar::U32) => {
                 Fault::syntax("indices that are unsigned integers", format!("{scalar:?}"))
             }
-            Some(number) => Fault::no_vertex(number.to_string(), 0, n_vertices as u64),
+            Some(number) => Fault::no_vertex(number, 0, n_vertices as u64),
             None => return Ok(numbers.into_iter().map(|x| x as u32).collect()),
         };
         Err(fault.in_part("accessor", index))
@@ -232,7 +232,7 @@ impl<'a> Data<'a> {
                     "decompress it, for example with `gltf-transform copy in.glb out.glb`",
                 )));
             }
-            None if count > self.n_bytes => return Err(at(Fault::DecompressionBomb { limit: self.n_bytes })),
+            None if count > self.n_bytes => return Err(at(Fault::decompression_bomb(self.n_bytes))),
             None => vec![0.0; count as usize * width],
         };
         let Some(Sparse { indices, values, count: n }) = &accessor.sparse else {
@@ -245,7 +245,7 @@ impl<'a> Data<'a> {
         let values = self.rows(values.buffer_view, values.byte_offset, *n, (scalar, width), false, at)?;
         for (place, row) in places.iter().zip(values.chunks_exact(width)) {
             let slot = numbers.chunks_exact_mut(width).nth(*place as usize).filter(|_| *place >= 0.0);
-            slot.ok_or_else(|| at(Fault::no_vertex(place.to_string(), 0, count)))?.copy_from_slice(row);
+            slot.ok_or_else(|| at(Fault::no_vertex(place, 0, count)))?.copy_from_slice(row);
         }
         Ok((accessor, scalar, numbers))
     }

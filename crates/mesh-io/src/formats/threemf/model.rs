@@ -194,7 +194,7 @@ impl Parser<'_> {
         // Triangles come after all vertices of their object.
         let n = self.object.mesh.n_vertices() as u64;
         if let Some(index) = face.into_iter().find(|v| !(0..n as i64).contains(v)) {
-            return Err(self.locate(Fault::no_vertex(index.to_string(), 0, n)));
+            return Err(self.locate(Fault::no_vertex(index, 0, n)));
         }
         self.object.mesh.faces.push(face.map(|v| VertexId(v as u32)));
         self.counts[1] += 1;

@@ -78,9 +78,9 @@ impl<'a> Package<'a> {
             let part = self.archive.by_index(number).map_err(damaged)?;
             part.take(self.budget.saturating_add(1))
                 .read_to_end(&mut content)
-                .map_err(|fault| Fault::syntax("compressed data", fault.to_string()))?;
+                .map_err(|fault| Fault::syntax("compressed data", fault))?;
             let left = self.budget.checked_sub(content.len() as u64);
-            self.budget = left.ok_or(Fault::DecompressionBomb { limit: self.limit })?;
+            self.budget = left.ok_or_else(|| Fault::decompression_bomb(self.limit))?;
             Ok(content)
         };
         read().whole().map_err(|fault| fault.of_member(name))
@@ -112,10 +112,9 @@ fn target(relationships: &[u8]) -> Option<String> {
 
 fn damaged(fault: ZipError) -> Fault {
     match fault {
-        ZipError::UnsupportedArchive(_) | ZipError::CompressionMethodNotSupported(_) => Fault::unsupported(
-            fault.to_string(),
-            "save it again with Deflate compression and without a password",
-        ),
-        other => Fault::syntax("an intact zip archive", other.to_string()),
+        ZipError::UnsupportedArchive(_) | ZipError::CompressionMethodNotSupported(_) => {
+            Fault::unsupported(fault, "save it again with Deflate compression and without a password")
+        }
+        other => Fault::syntax("an intact zip archive", other),
     }
 }
