@@ -63,6 +63,10 @@ impl Statements {
             while words.pop_if(|word| *word == b"\\").is_some() {
                 words.extend(lines.next().into_iter().flat_map(Line::tokens));
             }
+            // An old spelling.
+            if words.first() == Some(&&b"fo"[..]) {
+                words[0] = b"f";
+            }
             let (kind, kept) = match (words.first(), words.len()) {
                 (Some(&b"v"), 5) => (0, 5),
                 (Some(&b"v"), _) => (0, 4),

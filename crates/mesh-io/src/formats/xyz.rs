@@ -4,7 +4,8 @@ use crate::prelude::*;
 
 /// Reads three coordinates per line, separated by blanks, commas or semicolons. What follows them (intensity, color,
 /// normal) is ignored, and so is a first line of names, such as `//X Y Z`. A line with a single integer, as `.pts` files
-/// begin with, promises so many points. Between blanks or semicolons, a comma may mark decimals, as in `1,5 2,5 3,5`.
+/// begin with, promises so many points. Between blanks or semicolons, a comma may mark decimals, as in `1,5 2,5 3,5`. The number of
+/// each point before its coordinates is left out.
 pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
     let mut positions = Vec::new();
     let mut promised = None;
@@ -12,7 +13,9 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
     let first = lines.peek().ok_or_else(|| Fault::Empty.whole())?;
     let has_names = first.text.starts_with(b"//")
         || numbers(first.text).next().is_some_and(|name| name.eq_ignore_ascii_case(b"x"));
-    for line in lines.skip(usize::from(has_names)) {
+    let lines = lines.skip(usize::from(has_names));
+    let n_skipped = usize::from(is_numbered(lines.clone()));
+    for line in lines {
         let mut words = numbers(line.text);
         if let (Some(count), None) = (words.next().and_then(parse_number::<u64>), words.next()) {
             promised = Some(promised.unwrap_or(0u64).saturating_add(count));
@@ -22,7 +25,7 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
         if commas_mark_decimals(line)? {
             text.iter_mut().filter(|b| **b == b',').for_each(|b| *b = b'.');
         }
-        positions.push(parse_position(line, &mut numbers(&text), positions.len() + 1)?);
+        positions.push(parse_position(line, &mut numbers(&text).skip(n_skipped), positions.len() + 1)?);
         limits.check(positions.len() as u64, 0).in_line(line.number)?;
     }
     let found = positions.len() as u64;
@@ -31,6 +34,19 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
         Some(promised) if promised < found => Err(Fault::leftover("points", promised).whole()),
         _ => finish(TriMesh { positions, faces: Vec::new() }, limits),
     }
+}
+
+/// Whether every point comes after its number, counted from 0 or 1.
+fn is_numbered<'a>(lines: impl Iterator<Item = Line<'a>>) -> bool {
+    let mut next = None;
+    let mut is_next = |line: Line<'_>| {
+        let mut words = numbers(line.text);
+        let number = words.next().and_then(parse_number::<u64>);
+        let is_next = number.is_some_and(|number| next.map_or(number < 2, |next| number == next));
+        next = number.map(|number| number.saturating_add(1));
+        is_next && words.nth(2).is_some()
+    };
+    lines.filter(|line| numbers(line.text).nth(1).is_some()).all(&mut is_next)
 }
 
 fn is_separator(b: &u8) -> bool {
