@@ -1,6 +1,6 @@
 //! Errors.
 
-use surface::{EdgeId, FaceId, SurfacePoint, VertexId};
+use surface::{SurfacePoint, VertexId};
 
 /// Errors of this crate.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -25,9 +25,9 @@ pub enum GeodesicError {
         /// Number of vertices.
         n_vertices: usize,
     },
-    /// A source that is not on the surface.
+    /// A source that is not on the surface, and why.
     #[error("no such point on the surface: {0}")]
-    BadPoint(#[from] BadPoint),
+    BadPoint(String),
     /// A path to a point without a distance.
     #[error(
         "no path to {point}: it is on another component or beyond the distance limit; choose another target or raise \
@@ -64,37 +64,4 @@ impl From<linalg::LinalgError> for GeodesicError {
             other => Self::Matrix(other),
         }
     }
-}
-
-/// Why a point is not on a surface.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum BadPoint {
-    /// An edge that does not exist.
-    #[error("edge {edge} of {n_edges}")]
-    NoEdge {
-        /// The edge.
-        edge: EdgeId,
-        /// Edges of the surface.
-        n_edges: usize,
-    },
-    /// A position beyond the ends of an edge.
-    #[error("the position {t} along an edge is not in 0..=1")]
-    OffEdge {
-        /// The position.
-        t: f64,
-    },
-    /// A face that does not exist.
-    #[error("face {face} of {n_faces}")]
-    NoFace {
-        /// The face.
-        face: FaceId,
-        /// Faces of the surface.
-        n_faces: usize,
-    },
-    /// Barycentric coordinates of a point outside a face.
-    #[error("barycentric coordinates {barycentric:?} are negative or do not sum to 1")]
-    OffFace {
-        /// The coordinates.
-        barycentric: [f64; 3],
-    },
 }

@@ -54,7 +54,7 @@ mod source;
 mod tests;
 
 pub use dijkstra::Dijkstra;
-pub use error::{BadPoint, GeodesicError};
+pub use error::GeodesicError;
 pub use exact::{Exact, log_map};
 pub use fast_marching::{FastMarching, FastMarchingOptions, ObtuseTreatment, Update};
 pub use heat::{HeatMethod, HeatOptions};

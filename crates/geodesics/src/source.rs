@@ -2,7 +2,7 @@
 
 use surface::{IntrinsicMesh, NearestFirst, SurfacePoint, VertexId};
 
-use crate::error::{BadPoint, GeodesicError};
+use crate::error::GeodesicError;
 use crate::plane::{between, distance, dot, sub};
 use crate::sight::{Rays, SeenFace, faces_seen_from};
 
@@ -52,6 +52,7 @@ impl Source {
     /// [`GeodesicError::NoSuchVertex`] and [`GeodesicError::BadPoint`].
     pub fn new(mesh: &IntrinsicMesh, point: SurfacePoint) -> Result<Self, GeodesicError> {
         let topology = mesh.topology();
+        let bad = |why| Err(GeodesicError::BadPoint(why));
         match point {
             SurfacePoint::Vertex(vertex) => {
                 if vertex.index() >= mesh.n_vertices() {
@@ -60,20 +61,22 @@ impl Source {
             }
             SurfacePoint::Edge { edge, t } => {
                 if edge.index() >= topology.n_edges() {
-                    return Err(BadPoint::NoEdge { edge, n_edges: topology.n_edges() }.into());
+                    return bad(format!("edge {edge} of {}", topology.n_edges()));
                 }
                 if !(0.0..=1.0).contains(&t) {
-                    return Err(BadPoint::OffEdge { t }.into());
+                    return bad(format!("the position {t} along an edge is not in 0..=1"));
                 }
             }
             SurfacePoint::Face { face, barycentric } => {
                 if face.index() >= topology.n_faces() {
-                    return Err(BadPoint::NoFace { face, n_faces: topology.n_faces() }.into());
+                    return bad(format!("face {face} of {}", topology.n_faces()));
                 }
                 let sum: f64 = barycentric.iter().sum();
                 let whole = (1.0 - BARYCENTRIC_SLACK..=1.0 + BARYCENTRIC_SLACK).contains(&sum);
                 if barycentric.iter().any(|b| *b < 0.0) || !whole {
-                    return Err(BadPoint::OffFace { barycentric }.into());
+                    return bad(format!(
+                        "barycentric coordinates {barycentric:?} are negative or do not sum to 1"
+                    ));
                 }
             }
         }
