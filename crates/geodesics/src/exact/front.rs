@@ -31,19 +31,13 @@ pub(super) struct WindowFront<D = ()> {
     free: Vec<u32>,
     /// Lists whose vertex has been visited.
     ready: VecDeque<u32>,
-    memory: WindowMemory,
-    /// Windows delivered, and lists opened, since the last call of [`take_work`](Self::take_work).
-    work: usize,
-}
-
-/// The memory of the windows that wait, in windows.
-#[derive(Debug, Default)]
-struct WindowMemory {
-    /// Room in all lists.
+    /// Room in all lists, in windows, and how much there may be.
     held: usize,
     limit: usize,
-    /// What was needed when it exceeded the limit, or when the system had no more.
+    /// What was needed when that exceeded the limit, or when the system had no more.
     missing: Option<usize>,
+    /// Windows delivered, and lists opened, since the last call of [`take_work`](Self::take_work).
+    work: usize,
 }
 
 /// Bytes for the windows of one run if the budget has no limit: the front of a real surface of a million vertices has
@@ -58,27 +52,17 @@ struct WaitingList<D> {
     next: u32,
 }
 
-impl WindowMemory {
-    /// Makes room for more windows, unless that would take twice the limit or the system has no more memory.
-    #[cold]
-    fn may_grow<D>(&mut self, room: &mut Vec<PathWindow<D>>, count: usize) -> bool {
-        let needed = self.held.saturating_add(count);
-        let may = needed / 2 <= self.limit && room.try_reserve(count).is_ok();
-        if !may {
-            self.missing = Some(needed);
-        }
-        may
-    }
-}
-
 impl<D: Bearing> WindowFront<D> {
     /// Prepares for a new run. Allocates only to grow.
     ///
     /// Runs on all threads share the memory of the budget.
     pub(super) fn reset(&mut self, n_vertices: usize, n_corners: usize, budget: &Budget) {
         let bytes = budget.memory().map_or(MAX_BYTES, |bytes| bytes / rayon::current_num_threads());
-        let held = self.lists.iter().map(|list| list.windows.capacity()).sum();
-        self.memory = WindowMemory { held, limit: bytes / size_of::<PathWindow<D>>(), missing: None };
+        (self.limit, self.missing) = (bytes / size_of::<PathWindow<D>>(), None);
+        // Room that earlier runs left must not hinder this one.
+        if self.held > self.limit / 2 {
+            (self.lists, self.held) = (Vec::new(), 0);
+        }
         self.work = 0;
         self.labels.reset(n_vertices);
         self.arrivals.resize(n_vertices, (Arrival::Anywhere, D::default()));
@@ -135,11 +119,15 @@ impl<D: Bearing> WindowFront<D> {
     fn append(&mut self, list: u32, windows: impl ExactSizeIterator<Item = PathWindow<D>>) {
         let room = &mut self.lists[list as usize].windows;
         let (count, before) = (windows.len(), room.capacity());
-        if count > before - room.len() && !self.memory.may_grow(room, count) {
-            return;
+        if count > before - room.len() {
+            let needed = self.held.saturating_add(count);
+            if needed > self.limit || room.try_reserve(count).is_err() {
+                self.missing = Some(needed);
+                return;
+            }
         }
         room.extend(windows);
-        self.memory.held = self.memory.held + room.capacity() - before;
+        self.held += room.capacity() - before;
     }
 
     /// The operations since the last call.
@@ -148,36 +136,17 @@ impl<D: Bearing> WindowFront<D> {
         std::mem::take(&mut self.work)
     }
 
-    /// Keeps to the limit on memory: frees lists at no corner if all lists exceed it.
+    /// Whether all windows found room.
     ///
     /// # Errors
-    /// [`Exceeded::Memory`] or [`Exceeded::Allocation`] if windows are missing, or half of the limit is still in use.
+    /// [`Exceeded::Memory`] or [`Exceeded::Allocation`].
     #[inline]
-    pub(super) fn check_memory(&mut self) -> Result<(), Exceeded> {
-        match self.memory {
-            WindowMemory { missing: None, held, limit } if held <= limit => Ok(()),
-            _ => self.free_memory(),
-        }
-    }
-
-    #[cold]
-    fn free_memory(&mut self) -> Result<(), Exceeded> {
+    pub(super) fn check_memory(&self) -> Result<(), Exceeded> {
         let bytes = |windows: usize| windows.saturating_mul(size_of::<PathWindow<D>>());
-        let WindowMemory { held, limit, missing } = self.memory;
-        match missing {
-            Some(needed) if needed <= limit => Err(Exceeded::Allocation { needed: bytes(needed) }),
-            Some(needed) => Err(Exceeded::Memory { needed: bytes(needed), limit: bytes(limit) }),
-            None => {
-                for list in &self.free {
-                    self.lists[*list as usize].windows = Vec::new();
-                }
-                self.memory.held = self.lists.iter().map(|list| list.windows.capacity()).sum();
-                // Freeing must pay: what is freed has to be filled before it is freed again.
-                match self.memory.held <= limit / 2 {
-                    true => Ok(()),
-                    false => Err(Exceeded::Memory { needed: bytes(held), limit: bytes(limit) }),
-                }
-            }
+        match self.missing {
+            None => Ok(()),
+            Some(needed) if needed <= self.limit => Err(Exceeded::Allocation { needed: bytes(needed) }),
+            Some(needed) => Err(Exceeded::Memory { needed: bytes(needed), limit: bytes(self.limit) }),
         }
     }
 
@@ -216,7 +185,7 @@ impl<D: Bearing> WindowFront<D> {
         let index = self.ready.pop_front()?;
         let list = &mut self.lists[index as usize];
         windows.clear();
-        self.memory.held = self.memory.held + windows.capacity() - list.windows.capacity();
+        self.held = self.held + windows.capacity() - list.windows.capacity();
         std::mem::swap(windows, &mut list.windows);
         self.list_at[list.corner.index()] = NONE;
         self.free.push(index);
