@@ -8,9 +8,6 @@
 use super::bearing::Bearing;
 use super::window::{PathWindow, crossing, order};
 
-/// Up to this many windows, insertion sort is fastest.
-const FEW: usize = 40;
-
 /// Two pseudo-sources nearer to each other than this share of their distance from the edge are the same, with paths
 /// on both sides of a vertex without curvature. On flat parts this leaves one window, not one for every vertex
 /// passed.
@@ -27,7 +24,7 @@ const OVERLAP: f64 = 0.5;
 /// `ends` are the labels of the edge's ends.
 pub(super) fn trim<D: Bearing>(windows: &mut Vec<PathWindow<D>>, length: f64, ends: [f64; 2]) {
     cut_ends(windows, length, ends);
-    sort(windows);
+    windows.sort_by(|p, q| p.start.total_cmp(&q.start));
     // Of the windows before the current one, `kept` are left, in place.
     let mut kept = 0;
     for i in 0..windows.len() {
@@ -52,25 +49,6 @@ pub(super) fn trim<D: Bearing>(windows: &mut Vec<PathWindow<D>>, length: f64, en
         }
     }
     windows.truncate(kept);
-}
-
-/// Insertion sort is cheap for few windows, and for those that come in order from either side.
-fn sort<D: Copy>(windows: &mut [PathWindow<D>]) {
-    if windows.len() > FEW {
-        windows.sort_unstable_by(|p, q| p.start.total_cmp(&q.start));
-        return;
-    }
-    for i in 1..windows.len() {
-        if windows[i].start < windows[i - 1].start {
-            let window = windows[i];
-            let mut hole = i;
-            while hole > 0 && windows[hole - 1].start > window.start {
-                windows[hole] = windows[hole - 1];
-                hole -= 1;
-            }
-            windows[hole] = window;
-        }
-    }
 }
 
 /// Cuts the outermost windows where paths through the ends of the edge are shorter.
