@@ -105,8 +105,8 @@ pub struct HeatMethod {
     /// Mesh units in one unit of length inside.
     unit: f64,
     components: Components,
-    /// The vertices joined to each vertex by a side of a triangle, and their distances in units.
-    neighbors: Rows<(u32, f64)>,
+    /// The sides of the triangles, in units; inner ones come twice.
+    sides: EdgeGraph,
     /// The step that eliminates each vertex, which is its place in all vectors.
     step: Vec<u32>,
     /// The triangles and links; their vertices are given by their steps.
@@ -149,7 +149,12 @@ impl HeatMethod {
         let links = metric.links.iter().filter(|link| link.ends[0] != link.ends[1]);
         let mut bars: Vec<HeatBar> = links.map(|link| HeatBar::new(link, time.sqrt())).collect();
         let system = System::new(&laplacian, &bars, time, &grounded, &budget)?;
-        let neighbors = neighbors(mesh.n_vertices(), &laplacian.elements);
+        let sides = laplacian.elements.iter().flat_map(|element| {
+            let [a, b, c] = element.vertices.map(VertexId);
+            let [ab, ca, bc] = element.triangle.sides();
+            [([a, b], ab), ([b, c], bc), ([c, a], ca)].map(|(ends, length)| Link { ends, length })
+        });
+        let sides = EdgeGraph::new(mesh.n_vertices(), sides);
         let mut step = vec![0; mesh.n_vertices()];
         for (i, row) in system.heat.order().rows().iter().enumerate() {
             step[*row] = i as u32;
@@ -163,7 +168,7 @@ impl HeatMethod {
         Ok(Self {
             unit: metric.unit,
             components,
-            neighbors,
+            sides,
             step,
             elements,
             at_vertices: OnceLock::new(),
@@ -217,8 +222,7 @@ impl HeatMethod {
         let in_units = |length: f64| if self.unit > 0.0 { length / self.unit } else { 0.0 };
         let own = match source.point() {
             SurfacePoint::Vertex(vertex) => {
-                let neighbors = self.neighbors.row(vertex.index()).iter();
-                let neighbors = neighbors.map(|(v, side)| (*v as usize, 0.0, *side));
+                let neighbors = self.sides.ways(vertex).iter().map(|way| (way.to.index(), 0.0, way.length));
                 return [(vertex.index(), 1.0, 0.0)].into_iter().chain(neighbors).collect();
             }
             SurfacePoint::Edge { t, .. } => [1.0 - t, t, 0.0],
@@ -339,20 +343,6 @@ impl DistanceSolver for HeatMethod {
         }
         Ok(Matrix::from_vec(p, sources.len(), columns))
     }
-}
-
-/// The vertices joined to each vertex by a side of a triangle, and the length of the shortest such side.
-fn neighbors(n_vertices: usize, elements: &[Element]) -> Rows<(u32, f64)> {
-    let sides = elements.iter().flat_map(|element| {
-        let [a, b, c] = element.vertices;
-        let [ab, ca, bc] = element.triangle.sides();
-        [(a, b, ab), (b, c, bc), (c, a, ca)].into_iter().filter(|(v, w, _)| v != w)
-    });
-    let mut sides: Vec<(u32, u32, f64)> =
-        sides.flat_map(|(v, w, length)| [(v, w, length), (w, v, length)]).collect();
-    sides.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
-    sides.dedup_by_key(|(v, w, _)| (*v, *w));
-    Rows::collect(n_vertices, sides.iter().map(|(v, w, length)| (*v as usize, (*w, *length))))
 }
 
 /// The width of the widest component along edges, in units: the distance to the vertex farthest from the vertex
