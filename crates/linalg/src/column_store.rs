@@ -11,9 +11,6 @@ use crate::{LinalgError, Matrix};
 
 const BYTES: usize = size_of::<f64>();
 
-/// Numbers converted between memory and a file at a time.
-const CHUNK: usize = 1 << 13;
-
 /// Columns of `n_rows` numbers each, in memory or in a file. Both hold double precision, so that results do not depend
 /// on where the columns are.
 ///
@@ -258,25 +255,10 @@ fn seek(file: &mut File, first: usize) -> io::Result<u64> {
 
 fn read(file: &mut File, first: usize, out: &mut [f64]) -> io::Result<()> {
     seek(file, first)?;
-    let mut bytes = [0; CHUNK * BYTES];
-    for chunk in out.chunks_mut(CHUNK) {
-        let bytes = &mut bytes[..chunk.len() * BYTES];
-        file.read_exact(bytes)?;
-        for (number, bytes) in chunk.iter_mut().zip(bytes.as_chunks().0) {
-            *number = f64::from_le_bytes(*bytes);
-        }
-    }
-    Ok(())
+    file.read_exact(bytemuck::cast_slice_mut(out))
 }
 
 fn write(file: &mut File, first: usize, numbers: &[f64]) -> io::Result<()> {
     seek(file, first)?;
-    let mut bytes = [0; CHUNK * BYTES];
-    for chunk in numbers.chunks(CHUNK) {
-        for (number, bytes) in chunk.iter().zip(bytes.as_chunks_mut().0) {
-            *bytes = number.to_le_bytes();
-        }
-        file.write_all(&bytes[..chunk.len() * BYTES])?;
-    }
-    Ok(())
+    file.write_all(bytemuck::cast_slice(numbers))
 }
