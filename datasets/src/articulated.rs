@@ -128,16 +128,9 @@ pub struct LabeledShape {
 /// # Ok::<(), canonform_datasets::DatasetError>(())
 /// ```
 pub fn articulated(options: &ArticulatedOptions) -> Result<Vec<LabeledShape>, DatasetError> {
-    options.validate()?;
-    let models = Family::all().map(|family| (family, family.model()));
-    let shapes: Vec<_> = models
-        .iter()
-        .flat_map(|(family, model)| (0..family.n_shapes()).map(move |pose| (*family, model, pose)))
-        .collect();
-    let shape = |(family, model, pose)| {
-        rested(family, model, [0, pose], options, &Budget::unlimited()).map(|made| made.shape)
-    };
-    shapes.into_par_iter().map(shape).collect()
+    let numbered = |family: Family| (0..family.n_shapes()).map(move |pose| (family, pose));
+    let shapes: Vec<_> = Family::all().into_iter().flat_map(numbered).collect();
+    shapes.into_par_iter().map(|(family, pose)| articulated_shape(family, pose, options)).collect()
 }
 
 /// Generates one shape of the dataset, the same as in [`articulated()`].
@@ -210,22 +203,12 @@ pub fn articulated_at_rest(
     observer: &dyn Observer,
 ) -> Result<RestedShape, DatasetError> {
     options.validate()?;
-    rested(family, &family.model(), [body, pose], options, &observer.budget())
-}
-
-fn rested(
-    family: Family,
-    model: &BodyModel,
-    numbers: [usize; 2],
-    options: &ArticulatedOptions,
-    budget: &Budget,
-) -> Result<RestedShape, DatasetError> {
     let stream = |number, purpose| match purpose {
         // Bodies do not depend on the seed.
-        Purpose::Build => Stream::new(numbers[0] as u64, family as usize, 0, purpose),
+        Purpose::Build => Stream::new(body as u64, family as usize, 0, purpose),
         _ => Stream::new(options.seed, family as usize, number, purpose),
     };
-    bent(model, family.name(), numbers, options, stream, budget)
+    bent(&family.model(), family.name(), [body, pose], options, stream, &observer.budget())
 }
 
 /// A body of a model, 0 for its own, in a pose. A stream of random numbers has a number and a purpose.
@@ -358,7 +341,8 @@ mod tests {
             BodyPart::added(vec![Blob::ball([0.0, 50.0, 0.0], 10.0)]),
         ]);
         let options = ArticulatedOptions::default();
-        let error = rested(Family::Cat, &model, [0, 3], &options, &Budget::unlimited()).unwrap_err();
+        let stream = |number, purpose| Stream::new(1, 0, number, purpose);
+        let error = bent(&model, "cat", [0, 3], &options, stream, &Budget::unlimited()).unwrap_err();
         let expected = DatasetError::NoSurface { shape: "cat3".to_owned(), n_vertices: 3400, seed: 1 };
         assert_eq!(error, expected);
         assert!(error.to_string().contains("try another seed"));

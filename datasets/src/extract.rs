@@ -14,7 +14,6 @@ use crate::implicit::ImplicitBody;
 /// Cells along the side of a block. Blocks are searched, skipped and distributed to threads.
 const BLOCK: usize = 8;
 const SAMPLES: usize = BLOCK + 1;
-const NONE: u32 = u32::MAX;
 
 /// Placement of the lattice; each gives another triangulation of the same surface.
 #[derive(Debug, Clone, Copy)]
@@ -27,16 +26,17 @@ pub(crate) struct Lattice {
     pub(crate) spacing: f64,
 }
 
+/// The lower end of an edge of the lattice and its axis.
+type LatticeEdge = ([i64; 3], usize);
+
 /// The part of the surface inside one block.
 struct Leaf {
-    origin: [i64; 3],
-    /// Place in the block and sign pattern of each crossed cell.
-    cells: Vec<(u16, u8)>,
-    /// Crossings of the edges that this block owns, then centers of loops with more than four corners.
+    /// Lowest corner and sign pattern of each crossed cell.
+    cells: Vec<([i64; 3], u8)>,
+    /// The crossed edges that begin in the block.
+    edges: Vec<LatticeEdge>,
+    /// Crossings of these edges, then centers of loops with more than four corners.
     positions: Vec<Point3<f64>>,
-    n_crossings: usize,
-    /// Vertex on edge `3 * sample + axis`, counted within the block.
-    on_edge: Vec<u32>,
 }
 
 /// Extracts the surface of `body`, oriented outwards, with badly shaped triangles.
@@ -53,19 +53,14 @@ pub(crate) fn extract(body: &ImplicitBody, lattice: Lattice, budget: &Budget) ->
         .into_par_iter()
         .map(|origin| budget.check().map(|()| leaf(body, lattice, center, origin, &loops)))
         .collect::<Result<_, _>>()?;
-    let mut offsets = Vec::with_capacity(leaves.len());
-    let mut positions = Vec::new();
+    let (mut starts, mut positions, mut on_edge) = (Vec::new(), Vec::new(), HashMap::new());
     for leaf in &leaves {
-        offsets.push(positions.len() as u32);
+        on_edge.extend(leaf.edges.iter().copied().zip((positions.len()..).map(VertexId::from)));
+        starts.push(positions.len() + leaf.edges.len());
         positions.extend_from_slice(&leaf.positions);
     }
-    let by_origin: HashMap<[i64; 3], usize> = leaves.iter().enumerate().map(|(i, l)| (l.origin, i)).collect();
-    let faces = (0..leaves.len())
-        .into_par_iter()
-        .map(|i| triangles(&leaves, &offsets, &by_origin, i, &loops))
-        .collect::<Vec<_>>()
-        .concat();
-    Ok(TriMesh { positions, faces })
+    let faces = leaves.par_iter().zip(starts).map(|(leaf, middle)| triangles(leaf, middle, &on_edge, &loops));
+    Ok(TriMesh { positions, faces: faces.collect::<Vec<_>>().concat() })
 }
 
 impl Lattice {
@@ -170,74 +165,52 @@ fn leaf(
         let [p, q] = [at, to].map(|at| point(at.map(|x| x as f64)));
         p + (q - p) * t
     };
-    let mut positions = Vec::new();
-    let mut on_edge = vec![NONE; 3 * SAMPLES * SAMPLES * SAMPLES];
+    let in_lattice = |at: [usize; 3]| [0, 1, 2].map(|i| origin[i] + at[i] as i64);
+    let mut leaf = Leaf { cells: Vec::new(), edges: Vec::new(), positions: Vec::new() };
     for at in each(BLOCK) {
-        for axis in 0..3 {
-            if inside(at) != inside(step(at, axis)) {
-                on_edge[3 * sample_index(at) + axis] = positions.len() as u32;
-                positions.push(crossing(at, axis));
-            }
+        for axis in (0..3).filter(|axis| inside(at) != inside(step(at, *axis))) {
+            leaf.edges.push((in_lattice(at), axis));
+            leaf.positions.push(crossing(at, axis));
         }
     }
-    let n_crossings = positions.len();
-    let mut cells = Vec::new();
-    for (place, at) in each(BLOCK).enumerate() {
+    for at in each(BLOCK) {
         let pattern = (0..8).fold(0, |bits, c| bits | usize::from(inside(add(at, corner(c)))) << c);
         if pattern == 0 || pattern == 255 {
             continue;
         }
-        cells.push((place as u16, pattern as u8));
+        leaf.cells.push((in_lattice(at), pattern as u8));
         for polygon in loops[pattern].iter().filter(|l| l.len() > 4) {
             let sum = polygon.iter().fold(Vector3::zeros(), |sum, &e| {
                 let (low, axis) = EDGES[usize::from(e)];
                 sum + crossing(add(at, corner(low)), axis).coords
             });
-            positions.push(Point3::from(sum / polygon.len() as f64));
+            leaf.positions.push(Point3::from(sum / polygon.len() as f64));
         }
     }
-    Leaf { origin, cells, positions, n_crossings, on_edge }
+    leaf
 }
 
-/// The triangles of block `i`; vertices on its upper faces belong to its neighbors.
+/// The triangles of a block, whose first center of a loop is vertex `middle`.
 fn triangles(
-    leaves: &[Leaf],
-    offsets: &[u32],
-    by_origin: &HashMap<[i64; 3], usize>,
-    i: usize,
+    leaf: &Leaf,
+    mut middle: usize,
+    on_edge: &HashMap<LatticeEdge, VertexId>,
     loops: &[Vec<Loop>],
 ) -> Vec<[VertexId; 3]> {
-    let leaf = &leaves[i];
-    // The block itself and its seven upper neighbors.
-    let neighbors: [Option<usize>; 8] = [0, 1, 2, 3, 4, 5, 6, 7].map(|c| {
-        let step = corner(c);
-        by_origin.get(&[0, 1, 2].map(|k| leaf.origin[k] + (BLOCK * step[k]) as i64)).copied()
-    });
-    let vertex = |at: [usize; 3], axis: usize| {
-        let over = at.map(|x| x / BLOCK);
-        let owner = neighbors[over[0] | over[1] << 1 | over[2] << 2].unwrap_or(i);
-        let place = leaves[owner].on_edge[3 * sample_index(at.map(|x| x % BLOCK)) + axis];
-        VertexId(offsets[owner] + place)
-    };
     let mut faces = Vec::new();
-    let mut middle = offsets[i] + leaf.n_crossings as u32;
-    for &(place, pattern) in &leaf.cells {
-        let place = usize::from(place);
-        let at = [place % BLOCK, place / BLOCK % BLOCK, place / (BLOCK * BLOCK)];
-        for polygon in &loops[usize::from(pattern)] {
-            let corners: Vec<VertexId> = polygon
-                .iter()
-                .map(|&e| {
-                    let (low, axis) = EDGES[usize::from(e)];
-                    vertex(add(at, corner(low)), axis)
-                })
-                .collect();
-            match corners[..] {
+    for (at, pattern) in &leaf.cells {
+        let vertex = |e: &u8| {
+            let (low, axis) = EDGES[usize::from(*e)];
+            let step = corner(low);
+            on_edge[&([0, 1, 2].map(|i| at[i] + step[i] as i64), axis)]
+        };
+        for polygon in &loops[usize::from(*pattern)] {
+            match polygon.iter().map(vertex).collect::<Vec<_>>()[..] {
                 [a, b, c] => faces.push([a, b, c]),
                 [a, b, c, d] => faces.extend([[a, b, c], [a, c, d]]),
-                _ => {
-                    let n = corners.len();
-                    faces.extend((0..n).map(|k| [corners[k], corners[(k + 1) % n], VertexId(middle)]));
+                ref corners => {
+                    let next = corners.iter().cycle().skip(1);
+                    faces.extend(corners.iter().zip(next).map(|(a, b)| [*a, *b, VertexId::from(middle)]));
                     middle += 1;
                 }
             }

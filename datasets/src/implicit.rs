@@ -85,7 +85,6 @@ impl Blob {
     }
 
     /// Stretches space such that the flattened blob becomes a true round cone.
-    #[inline]
     fn stretch(&self, p: Vector3<f64>) -> Vector3<f64> {
         match self.flattening {
             None => p,
@@ -98,7 +97,6 @@ impl Blob {
     /// The foot is the point where the surface normal through `p` meets the axis. A cone that loses `sin(a)`
     /// of its radius per unit of length has normals tilted by `a`, so the foot lies `rho tan(a)` before the
     /// projection of `p`, where `rho` is the distance of `p` from the axis.
-    #[inline]
     fn sample(&self, p: Point3<f64>) -> ImplicitSample {
         let axis = &self.axis;
         let q = self.stretch(p.coords) - axis.start;
@@ -155,7 +153,6 @@ impl BodyPart {
         Self { blobs, carves, blend: 0.0, center, radius, scale, slack }
     }
 
-    #[inline]
     fn sample(&self, p: Point3<f64>) -> ImplicitSample {
         self.blobs
             .iter()
@@ -164,14 +161,12 @@ impl BodyPart {
 
     /// Whether the part can change the value `so_far` at `p`. Skipping it otherwise is exact: beyond its
     /// blending radius a smooth union returns the smaller operand.
-    #[inline]
     fn may_change(&self, p: Point3<f64>, so_far: f64) -> bool {
         let operand = if self.carves { -so_far } else { so_far };
         self.lower_bound(p) < operand + self.blend
     }
 
     /// A lower bound of the part's value that costs one square root.
-    #[inline]
     fn lower_bound(&self, p: Point3<f64>) -> f64 {
         self.scale * ((p - self.center).norm() - self.radius) - self.slack
     }
@@ -181,7 +176,6 @@ impl BodyPart {
 ///
 /// `min(a, b) - (reach - |a - b|)^2 / (4 reach)` is continuously differentiable, equals the smaller value
 /// where they differ by more, and its gradient is a convex combination of the two.
-#[inline]
 fn smooth_min(a: ImplicitSample, b: ImplicitSample, reach: f64) -> ImplicitSample {
     let (near, far) = if a.0 <= b.0 { (a, b) } else { (b, a) };
     let overlap = reach - (far.0 - near.0);
@@ -216,13 +210,11 @@ impl ImplicitBody {
     }
 
     /// The point of the described half that has the same value.
-    #[inline]
     fn folded(&self, p: Point3<f64>) -> Point3<f64> {
         if self.is_symmetric { Point3::new(p.x.abs(), p.y, p.z) } else { p }
     }
 
     /// Value and gradient at `p`. The value is 1-Lipschitz.
-    #[inline]
     pub(crate) fn sample(&self, p: Point3<f64>) -> ImplicitSample {
         let folded = self.folded(p);
         let mut sum = (f64::INFINITY, Vector3::zeros());
