@@ -237,7 +237,6 @@ impl LandmarkMetric {
     }
 
     /// The approximation of a squared distance, in squared quanta of the factor; it may be negative.
-    #[inline]
     fn product(&self, a: usize, b: usize) -> f64 {
         let Tables { rank, n_positive, ref factor, .. } = self.tables;
         let row = |point: usize| factor[point * rank..][..rank].split_at(n_positive);
@@ -247,7 +246,6 @@ impl LandmarkMetric {
 }
 
 /// The largest difference and the smallest sum of the entries of two rows.
-#[inline]
 fn extremes(a: &[u16], b: &[u16]) -> (u32, u32) {
     let (mut difference, mut sum) = (0u16, u16::MAX);
     for (x, y) in a.iter().zip(b) {
@@ -264,7 +262,6 @@ fn extremes(a: &[u16], b: &[u16]) -> (u32, u32) {
 
 /// The scalar product of two rows. Every product of two codes has 31 bits, so lanes of 32-bit floats lose a share of 6e-8 of
 /// the largest term.
-#[inline]
 fn dot(a: &[i16], b: &[i16]) -> f64 {
     let mut sums = [0f32; LANES];
     let (blocks, rest) = a.as_chunks::<LANES>();
