@@ -9,6 +9,7 @@ use base::Cache;
 use canonform::embed::describe_part;
 use canonform::search::{Answer, SearchOptions, SearchRank};
 use canonform::{Budget, ContentHash, Error};
+use tokio::sync::Semaphore;
 
 use crate::collection::{Collection, Served};
 use crate::cost;
@@ -16,7 +17,6 @@ use crate::duplicates::Duplicates;
 use crate::error::ApiError;
 use crate::measured::Measured;
 use crate::options::ServeOptions;
-use crate::places::Places;
 use crate::work::Work;
 
 /// Size of the cache of meshes, forms and thumbnails, in bytes.
@@ -30,7 +30,8 @@ pub(crate) struct App {
     pub(crate) served: Served,
     pub(crate) options: ServeOptions,
     pub(crate) work: Work,
-    pub(crate) uploads: Arc<Places>,
+    /// Bytes of uploads for which there is memory.
+    pub(crate) uploads: Arc<Semaphore>,
     pub(crate) duplicates: Duplicates,
     measured: Cache<String, Arc<Measured>>,
     pub(crate) thumbnails: Cache<String, Bytes>,
@@ -69,7 +70,7 @@ impl App {
         Ok(Self {
             served: Served::open(index)?,
             work: Work::new(&options),
-            uploads: Places::new(options.max_uploads),
+            uploads: Arc::new(Semaphore::new(options.max_uploads * options.max_upload)),
             duplicates: Duplicates::new(options.idle_time),
             // Thumbnails are smaller than meshes.
             measured: Cache::new(CACHE / 4 * 3),

@@ -67,9 +67,10 @@ impl ApiError {
             .with_remedy("simplify the mesh, or raise the upload limit of the server")
     }
 
-    /// The client sends nothing, or too slowly, perhaps while another one needs its place.
-    pub(crate) fn upload_too_slow(error: &str) -> Self {
-        Self::new(StatusCode::REQUEST_TIMEOUT, error).with_remedy("check the connection and send it again")
+    /// The client sends nothing, or too slowly.
+    pub(crate) fn upload_too_slow() -> Self {
+        Self::new(StatusCode::REQUEST_TIMEOUT, "the upload did not arrive in time")
+            .with_remedy("check the connection and send it again")
     }
 
     /// Too many requests; the client may retry after this many seconds.

@@ -1,26 +1,22 @@
-//! Middleware: who may ask for what, security headers, panics.
+//! Who may ask for what, and the headers of every response.
 
 use std::net::IpAddr;
-use std::panic::AssertUnwindSafe;
 use std::sync::Arc;
 
-use axum::Extension;
 use axum::extract::{Request, State};
-use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, Uri, header};
+use axum::http::uri::Authority;
+use axum::http::{HeaderMap, HeaderName, StatusCode, header};
 use axum::middleware::Next;
-use axum::response::{IntoResponse, Response};
-use futures_util::FutureExt;
+use axum::response::Response;
 
 use crate::app::App;
 use crate::error::ApiError;
 use crate::options::ServeOptions;
-use crate::pace::{Pace, Phase};
-use crate::upload::SharedBody;
 
 const SEC_FETCH_SITE: HeaderName = HeaderName::from_static("sec-fetch-site");
 
 /// Headers of every response. Plotly inserts style rules and renders its drawings to images.
-const HEADERS: [(HeaderName, &str); 5] = [
+pub(crate) const HEADERS: [(HeaderName, &str); 5] = [
     (
         header::CONTENT_SECURITY_POLICY,
         "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; \
@@ -31,33 +27,6 @@ const HEADERS: [(HeaderName, &str); 5] = [
     (header::X_FRAME_OPTIONS, "DENY"),
     (HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
 ];
-
-/// Refuses requests for other servers, turns panics into responses, and adds the headers.
-pub(crate) async fn guard(
-    State(app): State<Arc<App>>,
-    Extension(pace): Extension<Arc<Pace>>,
-    request: Request,
-    next: Next,
-) -> Response {
-    pace.begin(Phase::Working);
-    let (request, body) = SharedBody::of(request);
-    let mut response = match check(&app, request.uri(), request.headers()) {
-        Ok(()) => {
-            let answer = AssertUnwindSafe(next.run(request)).catch_unwind().await;
-            answer.unwrap_or_else(|_| ApiError::internal().into_response())
-        }
-        Err(refused) => refused.into_response(),
-    };
-    tokio::spawn(body.drained());
-    pace.begin(Phase::Waiting);
-    let headers = response.headers_mut();
-    for (name, value) in HEADERS {
-        headers.insert(name, HeaderValue::from_static(value));
-    }
-    // No cache keeps responses, except for images and scripts, which have their own header.
-    headers.entry(header::CACHE_CONTROL).or_insert(HeaderValue::from_static("no-store"));
-    response
-}
 
 /// Refuses what a page elsewhere asks for, whatever the method: it cannot read answers, but every one of them costs work.
 /// Browsers say where a request comes from in `Sec-Fetch-Site`. Old ones, and all on plain HTTP from another machine, send
@@ -88,15 +57,21 @@ fn single<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Result<Option<&'a st
     }
 }
 
-fn check(app: &App, uri: &Uri, headers: &HeaderMap) -> Result<(), ApiError> {
-    let host = single(headers, &header::HOST)?;
+/// Refuses requests for other servers.
+pub(crate) async fn refuse_other_hosts(
+    State(app): State<Arc<App>>,
+    request: Request,
+    next: Next,
+) -> Result<Response, ApiError> {
+    let host = single(request.headers(), &header::HOST)?;
     let host = host.ok_or_else(|| ApiError::bad_request("the request has no Host header"))?;
-    if uri.authority().is_some_and(|authority| authority.as_str() != host) {
+    if request.uri().authority().is_some_and(|authority| authority.as_str() != host) {
         return Err(ApiError::bad_request("the address of the request and its Host header differ"));
     }
     // A page elsewhere can resolve its own name to this machine (DNS rebinding), but not change the Host header.
     let ServeOptions { listen, public_host, .. } = &app.options;
-    let name = without_port(host);
+    let authority = host.parse::<Authority>().ok();
+    let name = authority.as_ref().map_or("", Authority::host);
     let is_public = public_host.as_ref().is_some_and(|public| public.eq_ignore_ascii_case(name));
     if listen.ip().is_loopback() && !is_loopback(name) && !is_public {
         let error = format!("this server is not `{}`", host.chars().take(100).collect::<String>());
@@ -104,16 +79,7 @@ fn check(app: &App, uri: &Uri, headers: &HeaderMap) -> Result<(), ApiError> {
             "open it as localhost, let the server listen on the address that others use, or tell it the host name of its proxy",
         ));
     }
-    Ok(())
-}
-
-/// A host without its port.
-fn without_port(host: &str) -> &str {
-    let is_port = |port: &str| port.bytes().all(|digit| digit.is_ascii_digit());
-    match host.rsplit_once(':') {
-        Some((name, port)) if is_port(port) && !name.ends_with(':') => name,
-        _ => host,
-    }
+    Ok(next.run(request).await)
 }
 
 /// Whether a host without a port is a loopback name or address.

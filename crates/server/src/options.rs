@@ -21,8 +21,8 @@ pub struct ServeOptions {
     pub max_upload: usize,
     /// Maximum number of vertices of a mesh; it may have four times as many faces. Default: 200,000.
     pub max_vertices: u64,
-    /// Maximum number of uploads being received or waiting; a further one takes the place of the one that has kept the server
-    /// waiting longest. Default: 16.
+    /// Number of uploads of the maximum size for which there is memory. Those being received, waiting and in progress share it;
+    /// one for which none is left is refused. Default: 16.
     pub max_uploads: usize,
     /// Number of requests processed at once; 0 for one more than there are cores. One of several places is kept for
     /// requests that take little time. Default: 0.
@@ -32,8 +32,9 @@ pub struct ServeOptions {
     pub time_limit: Duration,
     /// Maximum time for a complete upload. Default: five minutes.
     pub upload_time: Duration,
-    /// How long a client may keep the server waiting: for a request, for its body, or for taking the response. Every byte
-    /// that moves is worth some of that time: at 4,000 bytes per second it does not wait. Default: 15 seconds.
+    /// How long a client may keep the server waiting: for a request, for its body, or for taking the response. Every byte of a
+    /// body is worth some of that time: at 4,000 bytes per second the server does not wait. When three quarters of the
+    /// connections are taken, others have one second. Default: 15 seconds.
     pub idle_time: Duration,
     /// How long a query is kept. Default: one hour.
     pub query_lifetime: Duration,

@@ -6,24 +6,46 @@ use std::pin::pin;
 use std::sync::Arc;
 use std::time::Duration;
 
+use axum::http::{HeaderValue, header};
 use axum::middleware::{from_fn, from_fn_with_state};
-use futures_util::future::{Either, select};
-use hyper_util::server::graceful::GracefulShutdown;
+use axum::response::IntoResponse;
+use axum::{Extension, Router};
+use hyper::server::conn::http1;
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::service::TowerToHyperService;
+use tokio::io::AsyncReadExt;
+use tokio::net::TcpStream;
+use tokio::sync::Semaphore;
+use tokio_io_timeout::TimeoutStream;
 use tokio_util::sync::CancellationToken;
+use tower_http::catch_panic::CatchPanicLayer;
+use tower_http::set_header::SetResponseHeaderLayer;
 
 use crate::app::App;
-use crate::error::ServerError;
-use crate::guard::{guard, refuse_foreign_pages};
+use crate::error::{ApiError, ServerError};
+use crate::guard::{HEADERS, refuse_foreign_pages, refuse_other_hosts};
 use crate::options::{STACK, ServeOptions};
-use crate::pace::Pace;
-use crate::places::Places;
-use crate::{api, connection, page};
+use crate::{api, page};
 
 /// Pause after a connection could not be accepted, for example because of too many open files.
 const RETRY_PAUSE: Duration = Duration::from_millis(100);
 
-/// Most connections; a further one takes the place of the one that has kept the server waiting longest.
+/// Most connections. A further one waits.
 const CONNECTIONS: usize = 256;
+
+/// When so few connections are left, clients must hurry to get them, so that slow ones hold up nobody.
+const RESERVED: usize = CONNECTIONS / 4;
+
+/// How long a client may keep the server waiting on a reserved connection.
+const HURRY: Duration = Duration::from_secs(1);
+
+/// Maximum size of a request header, and of one read of a body, in bytes.
+const BUFFER: usize = 64 << 10;
+
+/// Many clients read the response only after they have sent everything, and not at all if the connection breaks before. So
+/// the rest of a refused upload is read and dropped, for so long and up to so many bytes.
+const REFUSED_TIME: Duration = Duration::from_secs(5);
+const REFUSED_BYTES: u64 = 256 << 20;
 
 /// How long requests in progress may take to finish after the server is stopped.
 const GRACE: Duration = Duration::from_secs(30);
@@ -108,33 +130,74 @@ impl Server {
         let router = api::router()
             .layer(from_fn(refuse_foreign_pages))
             .merge(page::router())
-            .layer(from_fn_with_state(app.clone(), guard))
+            .layer(from_fn_with_state(app.clone(), refuse_other_hosts))
+            .layer(CatchPanicLayer::custom(|_| ApiError::internal().into_response()));
+        let router = HEADERS.into_iter().fold(router, |router, (name, value)| {
+            router.layer(SetResponseHeaderLayer::overriding(name, HeaderValue::from_static(value)))
+        });
+        // No cache keeps responses, except for images and scripts, which have their own header.
+        let uncached = HeaderValue::from_static("no-store");
+        let router = router
+            .layer(SetResponseHeaderLayer::if_not_present(header::CACHE_CONTROL, uncached))
             .with_state(app.clone());
         let refreshing = tokio::spawn(refresh(app.clone()));
-        let options = &app.options;
-        let places = Places::new(CONNECTIONS);
-        let graceful = GracefulShutdown::new();
-        loop {
-            let next = pin!(async {
-                let (stream, _) = listener.accept().await?;
-                let pace = Arc::new(Pace::new(options.idle_time));
-                let place = places.enter(&pace).await;
-                Ok::<_, std::io::Error>((stream, place, pace))
-            });
-            let stopped = pin!(self.stop.0.cancelled());
-            let Either::Left((accepted, _)) = select(next, stopped).await else { break };
-            let Ok((stream, place, pace)) = accepted else {
-                tokio::time::sleep(RETRY_PAUSE).await;
-                continue;
-            };
-            let watcher = graceful.watcher();
-            tokio::spawn(connection::serve(stream, place, pace, router.clone(), watcher, options.idle_time));
-        }
+        let idle_time = app.options.idle_time;
+        let slots = Arc::new(Semaphore::new(CONNECTIONS));
+        let accepting = async {
+            loop {
+                let slot = slots.clone().acquire_owned().await;
+                let Ok((stream, _)) = listener.accept().await else {
+                    tokio::time::sleep(RETRY_PAUSE).await;
+                    continue;
+                };
+                let is_reserved = slots.available_permits() < RESERVED;
+                let patience = if is_reserved { idle_time.min(HURRY) } else { idle_time };
+                let answered = answer(stream, router.clone(), Patience(patience), self.stop.0.clone());
+                tokio::spawn(async move {
+                    answered.await;
+                    drop(slot);
+                });
+            }
+        };
+        self.stop.0.run_until_cancelled(accepting).await;
         drop(listener);
         refreshing.abort();
         app.duplicates.cancel();
-        let _ = tokio::time::timeout(GRACE, graceful.shutdown()).await;
+        let all_ended = slots.acquire_many(CONNECTIONS as u32);
+        let _ = tokio::time::timeout(GRACE, all_ended).await;
         Ok(())
+    }
+}
+
+/// How long the server waits for the client of a connection: for a request, for its body, and until a response is taken.
+#[derive(Clone, Copy)]
+pub(crate) struct Patience(pub(crate) Duration);
+
+/// Answers all requests of a connection; after a stop, only the one in progress.
+async fn answer(stream: TcpStream, router: Router, patience: Patience, stop: CancellationToken) {
+    let mut stream = pin!(TimeoutStream::new(stream));
+    stream.as_mut().set_write_timeout_pinned(Some(patience.0));
+    let served = {
+        let requests = TowerToHyperService::new(router.layer(Extension(patience)));
+        let connection = http1::Builder::new()
+            .timer(TokioTimer::new())
+            .header_read_timeout(patience.0)
+            .max_buf_size(BUFFER)
+            .serve_connection(TokioIo::new(stream.as_mut()), requests);
+        let mut connection = pin!(connection);
+        match stop.run_until_cancelled(connection.as_mut()).await {
+            Some(served) => served,
+            None => {
+                connection.as_mut().graceful_shutdown();
+                connection.await
+            }
+        }
+    };
+    // Broken connections are not errors of the server.
+    if served.is_ok() {
+        let (mut rest, mut nothing) = (stream.take(REFUSED_BYTES), tokio::io::sink());
+        let draining = tokio::time::timeout(REFUSED_TIME, tokio::io::copy(&mut rest, &mut nothing));
+        stop.run_until_cancelled(draining).await;
     }
 }
 

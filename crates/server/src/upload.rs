@@ -1,23 +1,19 @@
-//! Receives a multipart form with a mesh into memory, within limits.
+//! Receives a multipart form with a mesh into memory, within limits of size, time and memory.
 
 use std::path::PathBuf;
-use std::pin::{Pin, pin};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::task::{Context, Poll};
+use std::sync::Arc;
 use std::time::Duration;
 
-use axum::body::{Body, BodyDataStream, Bytes};
+use axum::body::HttpBody;
 use axum::extract::multipart::MultipartError;
 use axum::extract::{DefaultBodyLimit, FromRequest, Multipart, Request};
-use axum::http::{StatusCode, header};
+use axum::http::StatusCode;
 use canonform::mesh::io::mesh_files;
-use futures_util::future::{Either, select};
-use futures_util::{Stream, StreamExt};
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use tokio::time::{Instant, timeout_at};
 
 use crate::error::ApiError;
 use crate::options::ServeOptions;
-use crate::pace::{Pace, Phase};
-use crate::places::Place;
 
 /// Allowance for boundaries and headers of a form, in bytes.
 const FRAME: usize = 64 << 10;
@@ -28,60 +24,52 @@ const MOST_FILES: usize = 16;
 /// Number of characters of a file name to keep.
 const LONGEST_NAME: usize = 200;
 
-/// After a rejection the server keeps reading for this long, so that the client sees the response instead of a reset.
-const REFUSED_TIME: Duration = Duration::from_secs(5);
-const REFUSED_BYTES: usize = 256 << 20;
+/// The rate in bytes per second at which a client does not keep the server waiting.
+const RATE: f64 = 4000.0;
+
+/// Seconds after which a client may send an upload again for which there was no memory.
+const RETRY_AFTER: u32 = 2;
 
 /// Names without folders, and contents.
 pub(crate) type Files = Vec<(PathBuf, Vec<u8>)>;
 
 /// The announced length of a body, in bytes; 0 if it is not announced.
-pub(crate) fn announced(request: &Request) -> usize {
-    let length = request.headers().get(header::CONTENT_LENGTH).and_then(|length| length.to_str().ok());
-    length.and_then(|length| length.parse().ok()).unwrap_or(0)
+pub(crate) fn announced(request: &Request) -> u64 {
+    request.body().size_hint().lower()
 }
 
-/// Receives a form. The client must keep its pace, or it loses the `place`.
+/// Receives a form. A client that sends nothing for as long as the `patience` lasts is too slow; every byte puts that off. The
+/// files count as `memory`, one permit per byte, until the permits returned with them are dropped.
 pub(crate) async fn receive(
     mut request: Request,
-    place: &Place,
-    pace: &Pace,
+    patience: Duration,
+    memory: &Arc<Semaphore>,
     options: &ServeOptions,
-) -> Result<Files, ApiError> {
-    if announced(&request) > options.max_upload + FRAME {
-        return Err(ApiError::upload_too_large(options.max_upload));
+) -> Result<(Files, OwnedSemaphorePermit), ApiError> {
+    let too_large = || ApiError::upload_too_large(options.max_upload);
+    let most = options.max_upload + FRAME;
+    if announced(&request) > most as u64 {
+        return Err(too_large());
     }
-    DefaultBodyLimit::max(options.max_upload + FRAME).apply(&mut request);
-    pace.begin(Phase::Receiving);
-    let form = pin!(read(request, options));
-    let slow = pin!(pace.is_over(Phase::Receiving));
-    let late = pin!(tokio::time::sleep(options.upload_time));
-    let lost = pin!(place.lost());
-    let received = match select(form, select(select(slow, late), lost)).await {
-        Either::Left((form, _)) => form,
-        Either::Right((Either::Left(_), _)) => {
-            Err(ApiError::upload_too_slow("the upload did not arrive in time"))
-        }
-        Either::Right((Either::Right(_), _)) => {
-            Err(ApiError::upload_too_slow("the upload arrived too slowly while others were waiting"))
-        }
-    };
-    pace.begin(Phase::Working);
-    received
-}
-
-async fn read(request: Request, options: &ServeOptions) -> Result<Files, ApiError> {
+    DefaultBodyLimit::max(most).apply(&mut request);
     let mut form = Multipart::from_request(request, &()).await.map_err(|_| {
         ApiError::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, "the request is not a form with a file")
             .with_remedy(form_remedy())
     })?;
     let faulty = |fault: MultipartError| match fault.status() {
-        StatusCode::PAYLOAD_TOO_LARGE => ApiError::upload_too_large(options.max_upload),
+        StatusCode::PAYLOAD_TOO_LARGE => too_large(),
         _ => ApiError::bad_request(format!("the form cannot be read: {}", fault.body_text()))
             .with_remedy(form_remedy()),
     };
-    let mut files = Files::new();
-    while let Some(part) = form.next_field().await.map_err(faulty)? {
+    let late = |_| ApiError::upload_too_slow();
+    let hold = |bytes: usize| {
+        let permit = memory.clone().try_acquire_many_owned(bytes as u32);
+        permit.map_err(|_| ApiError::busy(RETRY_AFTER))
+    };
+    let latest = Instant::now() + options.upload_time;
+    let mut deadline = latest.min(Instant::now() + patience);
+    let (mut files, mut held) = (Files::new(), hold(0)?);
+    while let Some(mut part) = timeout_at(deadline, form.next_field()).await.map_err(late)?.map_err(faulty)? {
         if files.len() == MOST_FILES {
             return Err(ApiError::bad_request(format!("the form has more than {MOST_FILES} files")));
         }
@@ -89,13 +77,19 @@ async fn read(request: Request, options: &ServeOptions) -> Result<Files, ApiErro
             return Err(ApiError::bad_request("a field of the form is no file")
                 .with_remedy("give parameters in the address, such as /api/search?k=5"));
         };
-        let content = part.bytes().await.map_err(faulty)?;
+        let mut content = Vec::new();
+        while let Some(piece) = timeout_at(deadline, part.chunk()).await.map_err(late)?.map_err(faulty)? {
+            held.merge(hold(piece.len())?);
+            content.extend_from_slice(&piece);
+            deadline += Duration::from_secs_f64(piece.len() as f64 / RATE);
+            deadline = deadline.min(Instant::now() + patience).min(latest);
+        }
         // Browsers send nothing of this name if no file was chosen.
         if !(name.as_os_str().is_empty() && content.is_empty()) {
-            files.push((name, content.into()));
+            files.push((name, content));
         }
     }
-    Ok(files)
+    Ok((files, held))
 }
 
 fn form_remedy() -> String {
@@ -108,43 +102,6 @@ fn clean_name(name: &str) -> PathBuf {
     let skipped = name.chars().count().saturating_sub(LONGEST_NAME);
     let clean = |c: char| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c };
     name.chars().skip(skipped).map(clean).collect::<String>().into()
-}
-
-/// The body of a request, of which something may be left when the request is answered.
-#[derive(Clone)]
-pub(crate) struct SharedBody(Arc<Mutex<BodyDataStream>>);
-
-impl Stream for SharedBody {
-    type Item = Result<Bytes, axum::Error>;
-
-    fn poll_next(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<Self::Item>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).poll_next_unpin(context)
-    }
-}
-
-impl SharedBody {
-    /// The request, and its body.
-    pub(crate) fn of(request: Request) -> (Request, Self) {
-        let (head, body) = request.into_parts();
-        let body = Self(Arc::new(Mutex::new(body.into_data_stream())));
-        (Request::from_parts(head, Body::from_stream(body.clone())), body)
-    }
-
-    /// Reads the rest for a while and drops it: many clients read the response only after they have sent everything, and
-    /// not at all if the connection breaks before.
-    pub(crate) async fn drained(mut self) {
-        let mut left = REFUSED_BYTES;
-        let draining = async {
-            while let Some(Ok(piece)) = self.next().await {
-                left = left.saturating_sub(piece.len());
-                if left == 0 {
-                    break;
-                }
-            }
-        };
-        // Both outcomes are fine.
-        let _ = tokio::time::timeout(REFUSED_TIME, draining).await;
-    }
 }
 
 #[cfg(test)]

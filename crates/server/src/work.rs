@@ -9,7 +9,6 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
 use crate::error::ApiError;
 use crate::options::ServeOptions;
-use crate::places::Place;
 
 /// Seconds that every job takes, with nothing to measure or to compare.
 const BASE: f64 = 0.1;
@@ -29,34 +28,12 @@ pub(crate) struct Work {
     jobs: Arc<Semaphore>,
     /// Long jobs need a permit of these too, so that one place is left for short ones.
     long_jobs: Arc<Semaphore>,
-    /// Of short and of long jobs.
-    accepted: [Accepted; 2],
+    /// Of short and of long jobs: how many of them run at once, and the milliseconds that may be added to those of accepted
+    /// jobs.
+    accepted: [(usize, Arc<Semaphore>); 2],
+    /// Milliseconds that may be promised for each place.
+    promised: usize,
     time_limit: Duration,
-}
-
-/// Jobs that have been accepted and are not done: milliseconds that may be added to theirs are permits.
-struct Accepted {
-    /// How many of them run at once.
-    places: usize,
-    limit: u32,
-    left: Arc<Semaphore>,
-}
-
-impl Accepted {
-    fn new(places: usize, time_limit: Duration) -> Self {
-        let limit = ((MARGIN * 1e3 * time_limit.as_secs_f64()) as u32).max(1).saturating_mul(places as u32);
-        Self { places, limit, left: Arc::new(Semaphore::new(limit as usize)) }
-    }
-
-    /// Accepts a job of this cost until the permit is dropped, unless those before it leave too little of the time limit.
-    /// Without any before it, it is accepted: the estimate may be wrong.
-    fn accept(&self, cost: f64) -> Result<OwnedSemaphorePermit, ApiError> {
-        let wanted = ((1e3 * (BASE + cost)) as u32).min(self.limit);
-        self.left.clone().try_acquire_many_owned(wanted).map_err(|_| {
-            let before = self.limit as usize - self.left.available_permits();
-            ApiError::busy(before.div_ceil(1000 * self.places).clamp(1, 3600) as u32)
-        })
-    }
 }
 
 /// Cancels a job when nobody waits for it any more.
@@ -73,18 +50,27 @@ impl Work {
         let cores = || std::thread::available_parallelism().map_or(1, NonZero::get);
         let jobs = if options.jobs == 0 { cores() + 1 } else { options.jobs };
         let long_jobs = (jobs - 1).max(1);
+        let promised = (MARGIN * 1e3 * options.time_limit.as_secs_f64()).max(1.0) as usize;
         Self {
             jobs: Arc::new(Semaphore::new(jobs)),
             long_jobs: Arc::new(Semaphore::new(long_jobs)),
-            accepted: [1, long_jobs].map(|places| Accepted::new(places, options.time_limit)),
+            accepted: [1, long_jobs].map(|places| (places, Arc::new(Semaphore::new(promised * places)))),
+            promised,
             time_limit: options.time_limit,
         }
     }
 
-    /// Accepts a job of this [cost](crate::cost) until the permit is dropped; before it is received, to reject it at once if it
-    /// could not be done in time.
+    /// Accepts a job of this [cost](crate::cost) until the permit is dropped, unless those before it leave too little of the
+    /// time limit; before it is received, to reject it at once. Without any before it, it is accepted: the estimate may be
+    /// wrong.
     pub(crate) fn accept(&self, cost: f64) -> Result<OwnedSemaphorePermit, ApiError> {
-        self.accepted[usize::from(is_long(cost))].accept(cost)
+        let (places, left) = &self.accepted[usize::from(is_long(cost))];
+        let all = self.promised * places;
+        let wanted = all.min((1e3 * (BASE + cost)) as u32 as usize);
+        left.clone().try_acquire_many_owned(wanted as u32).map_err(|_| {
+            let before = all - left.available_permits();
+            ApiError::busy(before.div_ceil(1000 * places).clamp(1, 3600) as u32)
+        })
     }
 
     /// Runs `job` of this [cost](crate::cost) on a thread of its own when its turn comes. After the time limit, and
@@ -92,7 +78,7 @@ impl Work {
     pub(crate) async fn run<T: Send + 'static>(
         &self,
         cost: f64,
-        held: Option<Place>,
+        held: Option<OwnedSemaphorePermit>,
         job: impl FnOnce(&Budget) -> Result<T, ApiError> + Send + 'static,
     ) -> Result<T, ApiError> {
         let accepted = self.accept(cost)?;

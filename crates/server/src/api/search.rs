@@ -25,11 +25,8 @@ use crate::collection::Collection;
 use crate::cost;
 use crate::error::ApiError;
 use crate::measured::Measured;
-use crate::pace::Pace;
+use crate::serve::Patience;
 use crate::upload::{Files, announced, receive};
-
-/// Seconds after which a client may send an upload again for which there was no place.
-const RETRY_AFTER: u32 = 2;
 
 /// Maximum number of results.
 const MOST_FOUND: usize = 100;
@@ -122,7 +119,7 @@ impl Wanted {
 /// Searches with an upload.
 pub(super) async fn search(
     State(app): State<Arc<App>>,
-    Extension(pace): Extension<Arc<Pace>>,
+    Extension(Patience(patience)): Extension<Patience>,
     Params(params): Params<SearchParams>,
     request: Request,
 ) -> Result<Response, ApiError> {
@@ -132,13 +129,12 @@ pub(super) async fn search(
     }
     // Only to learn whether it would be.
     drop(app.work.accept(announced(&request) as f64 * cost::UPLOADED_BYTE)?);
-    let place = app.uploads.try_enter(&pace).ok_or_else(|| ApiError::busy(RETRY_AFTER))?;
-    let files = receive(request, &place, &pace, &app.options).await?;
+    let (files, held) = receive(request, patience, &app.uploads, &app.options).await?;
     let (shared, bytes) = (app.clone(), files.iter().map(|(_, content)| content.len()).sum::<usize>());
     let vertices = (bytes / VERTEX_BYTES) as u64;
     let searching = app.served.collection().search_cost(&wanted.options, vertices);
     let answer = move |budget: &Budget| with_upload(&shared, files, &wanted, budget);
-    app.work.run(bytes as f64 * cost::UPLOADED_BYTE + searching, Some(place), answer).await
+    app.work.run(bytes as f64 * cost::UPLOADED_BYTE + searching, Some(held), answer).await
 }
 
 /// Searches with a shape of the index or an earlier upload.

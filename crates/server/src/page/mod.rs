@@ -7,7 +7,6 @@ use std::sync::Arc;
 use axum::Router;
 use axum::body::Bytes;
 use axum::http::HeaderMap;
-use axum::response::Response;
 use axum::routing::get;
 
 use crate::api::{is_known, tag, tagged};
@@ -46,12 +45,10 @@ pub(crate) fn router() -> Router<Arc<App>> {
         let mut hash = DefaultHasher::new();
         text.hash(&mut hash);
         let tag = tag(&format!("{:016x}", hash.finish()));
-        let answer = move |headers: HeaderMap| async move { file(&headers, tag, kind, text) };
+        let answer = move |headers: HeaderMap| async move {
+            let content = (!is_known(&headers, &tag)).then_some(text);
+            tagged(tag, kind, content)
+        };
         router.route(path, get(answer))
     })
-}
-
-fn file(headers: &HeaderMap, tag: axum::http::HeaderValue, kind: &'static str, text: Bytes) -> Response {
-    let content = (!is_known(headers, &tag)).then_some(text);
-    tagged(tag, kind, content)
 }

@@ -155,5 +155,5 @@ fn uploads_of_a_byte_now_and_then_give_way() {
     let head = upload_head(server.address, boundary, 1_000_000) + &format!("--{boundary}\r\n");
     let open = |stream: &mut TcpStream| drop(stream.write_all(head.as_bytes()));
     let again = |stream: &mut TcpStream| drop(stream.write_all(b"C"));
-    besieged(&server, 40, open, again, || assert_serves(&server));
+    besieged(&server, 300, open, again, || assert_serves(&server));
 }

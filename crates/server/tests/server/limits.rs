@@ -63,6 +63,39 @@ fn silent_clients_are_disconnected() {
 }
 
 #[test]
+fn clients_that_take_no_response_are_disconnected() {
+    let idle = Duration::from_millis(200);
+    let server = Served::start(ServeOptions { idle_time: idle, ..options() });
+    let file = ask(server.address, "GET", "/assets/plotly.js", &[], b"").unwrap().body.len();
+    let mut stream = connect(server.address).unwrap();
+    let request = format!("GET /assets/plotly.js HTTP/1.1\r\nHost: {}\r\n\r\n", server.address);
+    // More than all buffers between the two hold.
+    let n = (64 << 20) / file;
+    stream.write_all(request.repeat(n).as_bytes()).unwrap();
+    std::thread::sleep(10 * idle);
+    let mut taken = Vec::new();
+    let _ = stream.read_to_end(&mut taken);
+    assert!(taken.len() < n * file / 2, "{} of {} bytes", taken.len(), n * file);
+}
+
+#[test]
+fn uploads_beyond_the_memory_for_them_are_refused() {
+    let limits = ServeOptions { max_upload: 200_000, max_uploads: 1, ..options() };
+    let server = Served::start(limits);
+    let mesh = fs::read(server.mesh("ring0")).unwrap();
+    let (body, boundary) = form(&[("q.off", &[b'0'; 200_000])]);
+    let mut first = connect(server.address).unwrap();
+    first.write_all(upload_head(server.address, boundary, body.len()).as_bytes()).unwrap();
+    first.write_all(&body[..body.len() - 1000]).unwrap();
+    std::thread::sleep(Duration::from_millis(300));
+    let second = upload(server.address, &[("q.off", &mesh)], &[]).unwrap();
+    assert_eq!((second.status, second.header("retry-after")), (503, Some("2")));
+    drop(first);
+    std::thread::sleep(Duration::from_millis(300));
+    assert_eq!(upload(server.address, &[("q.off", &mesh)], &[]).unwrap().status, 200);
+}
+
+#[test]
 fn a_proxy_may_pass_on_its_name_if_it_is_told() {
     let public_host = Some("shapes.example.org".to_owned());
     let server = Served::start(ServeOptions { public_host, ..options() });
