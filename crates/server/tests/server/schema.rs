@@ -13,18 +13,21 @@ pub(crate) fn told(server: &Served, method: &str, route: &str, status: u16, answ
     assert_eq!(answer.status, status, "{method} {route}: {json}");
     let description = get(server, "/api/openapi.json").json();
     let response = &description["paths"][route][method]["responses"][status.to_string()];
+    let response = resolved(&description, response);
     assert!(response.is_object(), "{method} {route} answers {status}, which is not described: {json}");
     let schema = &response["content"]["application/json"]["schema"];
     compare(&description, schema, &json, &format!("{method} {route} {status}"));
     json
 }
 
+/// A part of the description, or the one that it refers to.
+fn resolved<'a>(description: &'a Value, part: &'a Value) -> &'a Value {
+    part["$ref"].as_str().map_or(part, |name| description.pointer(&name[1..]).unwrap())
+}
+
 /// Fails where a value is not as its schema describes it.
 fn compare(description: &Value, schema: &Value, value: &Value, place: &str) {
-    if let Some(name) = schema["$ref"].as_str() {
-        let name = name.strip_prefix("#/components/schemas/").unwrap();
-        return compare(description, &description["components"]["schemas"][name], value, place);
-    }
+    let schema = resolved(description, schema);
     if let Some(choices) = schema["anyOf"].as_array() {
         // Null and something else.
         let (null, others): (Vec<_>, Vec<_>) = choices.iter().partition(|choice| choice["type"] == "null");
