@@ -135,10 +135,7 @@ pub enum Error {
         method: &'static str,
     },
     /// A surface that an embedding is not of.
-    #[error(
-        "the embedding is of another surface: it has {n_points} points and this surface {n_vertices} vertices, or distances \
-         between them differ"
-    )]
+    #[error("the embedding is of another surface: it has {n_points} points and this surface {n_vertices} vertices")]
     OtherSurface {
         /// Vertices of the surface after its repair.
         n_vertices: usize,

@@ -402,18 +402,9 @@ impl Surface {
     }
 
     /// The embedded surface.
-    fn canonical_form(
-        &self,
-        py: Python<'_>,
-        settings: Settings,
-        reuse: Option<PyRef<'_, Form>>,
-    ) -> PyResult<Form> {
+    fn canonical_form(&self, py: Python<'_>, settings: Settings) -> PyResult<Form> {
         let (options, stress) = (settings.form(self.inner.input.repair)?, settings.stress());
         let options = EmbedOptions::from(&options).stress(stress);
-        let options = match &reuse {
-            None => options,
-            Some(form) => options.reuse(&form.embedded),
-        };
         let surface = &*self.inner;
         let embedded = run(py, |observer| embed(surface, options, observer))?;
         Ok(Form { surface: self.inner.clone(), embedded })

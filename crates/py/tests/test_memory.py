@@ -193,7 +193,6 @@ def test_compare_match_and_align_take_any_mesh(shapes: list[Shape], tmp_path: Pa
         (lambda s, i: s.picture(points=[99]), PointError, "99 is not a point"),
         (lambda s, i: canonform.FastMarching(update=3), OptionError, "update=3 is not possible: use text"),
         (lambda s, i: s.farthest_points(3, first=2**40), PointError, "1099511627776"),
-        (lambda s, i: s.canonical_form(reuse=5), OptionError, "reuse=5"),
     ],
 )
 def test_every_error_is_ours(index: Index, square: Surface, call: Callable, kind: type[Exception], words: str) -> None:

@@ -179,7 +179,7 @@ def test_methods_have_the_options_that_rust_uses() -> None:
 
 def test_keywords_are_the_options_of_the_library() -> None:
     assert "no option color" in _fault(color=3)
-    others = {"self", "reuse", "progress", "a", "b", "names", "meshes", "path", "labels", "prune", "shard", "call", "keep_meshes"}
+    others = {"self", "progress", "a", "b", "names", "meshes", "path", "labels", "prune", "shard", "call", "keep_meshes"}
     for call in (canonform.Surface.canonical_form, canonform.compare, canonform.Index.build):
         keywords = set(inspect.signature(call).parameters) - others
         assert {"n_landmarks", "method", "geodesic", "seed"} <= keywords

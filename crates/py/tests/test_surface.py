@@ -273,16 +273,11 @@ def test_exceptions_are_also_the_built_in_ones() -> None:
         assert issubclass(kind, built_in) and issubclass(kind, errors.CanonformError)
 
 
-def test_samples_are_taken_until_they_are_enough_and_reused(cat: Shape) -> None:
+def test_samples_are_taken_until_they_are_enough(cat: Shape) -> None:
     surface = cat.surface()
     form = surface.canonical_form(n_landmarks="auto")
     auto = form.report["auto"]
     assert auto["stop"] == "settled" and 2 * auto["sufficient"] <= len(form.landmarks)
-    more = surface.canonical_form(n_landmarks=30, reuse=form)
-    np.testing.assert_array_equal(more.points, surface.canonical_form(n_landmarks=30).points)
-    other = Surface(surface.vertices * [1, 1, 1.5], surface.faces)
-    with pytest.raises(canonform.CanonformError, match="another surface"):
-        other.canonical_form(n_landmarks=30, reuse=form)
 
 
 def test_unaligned_arrays_are_read(square: Surface) -> None:

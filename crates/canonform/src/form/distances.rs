@@ -1,13 +1,11 @@
 //! Measuring the distances that an embedding method needs.
 
-use std::borrow::Cow;
 use std::cell::Cell;
 use std::fmt;
 use std::str::FromStr;
 use std::time::Instant;
 
-use base::{Budget, Exceeded};
-use geodesics::{DistanceSolver, FirstSample, Sampler, Sampling, Source};
+use geodesics::{DistanceSolver, FirstSample, Sampler, Sampling};
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
 use nmds::{EmbedSamples, SampleSearch};
 use surface::VertexId;
@@ -165,52 +163,5 @@ impl Measurement<'_> {
         let result = work();
         self.seconds.set(self.seconds.get() + start.elapsed().as_secs_f64());
         result
-    }
-}
-
-/// A solver that looks up what is known and measures the rest.
-#[derive(Debug)]
-pub(super) struct KnownColumns<'a> {
-    pub(super) solver: &'a dyn DistanceSolver,
-    pub(super) known: &'a LandmarkDistances,
-}
-
-impl KnownColumns<'_> {
-    /// The distances from a vertex, if it is a known landmark whose column can be read.
-    fn column(&self, vertex: VertexId) -> Option<Cow<'_, [f64]>> {
-        let landmark = self.known.landmarks().iter().position(|&landmark| landmark == vertex.index())?;
-        self.known.column(landmark).ok()
-    }
-}
-
-impl DistanceSolver for KnownColumns<'_> {
-    fn n_vertices(&self) -> usize {
-        self.solver.n_vertices()
-    }
-
-    fn budget(&self) -> Budget {
-        self.solver.budget()
-    }
-
-    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) -> Result<(), Exceeded> {
-        self.solver.solve_into(sources, max_distance, out)
-    }
-
-    fn distances_into(&self, source: VertexId, out: &mut [f64]) -> Result<(), Exceeded> {
-        match self.column(source) {
-            Some(column) => {
-                out.copy_from_slice(&column);
-                Ok(())
-            }
-            None => self.solver.distances_into(source, out),
-        }
-    }
-
-    fn prunes(&self) -> bool {
-        self.solver.prunes()
-    }
-
-    fn lower(&self, source: VertexId, nearest: &mut [f64]) -> Result<(), Exceeded> {
-        self.solver.lower(source, nearest)
     }
 }

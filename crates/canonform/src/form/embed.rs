@@ -4,13 +4,12 @@ use std::borrow::Cow;
 use std::time::Instant;
 
 use base::Observer;
-use geodesics::{DistanceSolver, FirstSample, Observed};
-use linalg::LandmarkDistances;
+use geodesics::{FirstSample, Observed};
 use mesh::{InputMap, Surface};
 use nmds::DistanceRows;
 use surface::{IntrinsicMesh, VertexId};
 
-use super::distances::{KnownColumns, Measurement, Samples, plan};
+use super::distances::{Measurement, Samples, plan};
 use super::embedded::Embedded;
 use super::extend::Coarser;
 use super::options::FormOptions;
@@ -37,30 +36,21 @@ impl<'a> From<(IntrinsicMesh, &'a InputMap)> for EmbedInput<'a> {
     }
 }
 
-/// How [`embed`] embeds: the options of the form, whether the stress is measured, and what is known. Made from [`FormOptions`].
+/// How [`embed`] embeds: the options of the form, whether the stress is measured, and in what coordinates. Made from [`FormOptions`].
 #[derive(Debug, Clone)]
 pub struct EmbedOptions<'a> {
     /// How the form is made.
     pub form: &'a FormOptions,
     /// How the stress of the result is measured. Default: not.
     pub stress: StressOptions,
-    earlier: Earlier<'a>,
-}
-
-/// An earlier embedding.
-#[derive(Debug, Clone)]
-enum Earlier<'a> {
-    None,
-    /// Of the same surface.
-    Same(&'a Embedded),
-    /// Of a coarser mesh.
-    Coarser(Coarser<'a>),
+    /// The form of a coarser mesh, in whose coordinates this one is embedded.
+    coarser: Option<Coarser<'a>>,
 }
 
 impl<'a> From<&'a FormOptions> for EmbedOptions<'a> {
     fn from(form: &'a FormOptions) -> Self {
         let stress = StressOptions { choice: StressChoice::Skip, ..StressOptions::default() };
-        Self { form, stress, earlier: Earlier::None }
+        Self { form, stress, coarser: None }
     }
 }
 
@@ -69,29 +59,6 @@ impl<'a> EmbedOptions<'a> {
     #[must_use]
     pub fn stress(self, stress: StressOptions) -> Self {
         Self { stress, ..self }
-    }
-
-    /// Looks up the distances that an earlier embedding of the same surface has measured: to take more samples, or to try another
-    /// method or rank on the same ones. The result is the same, bit for bit.
-    ///
-    /// ```
-    /// use canonform::Surface;
-    /// use canonform::embed::{EmbedOptions, FormOptions, Samples, embed};
-    /// use canonform::mesh::shapes;
-    ///
-    /// let surface = Surface::new(&shapes::torus(24, 12, 2.0, 0.7), &Default::default(), &())?;
-    /// let few = FormOptions { samples: Samples::Count(20), ..FormOptions::default() };
-    /// let many = FormOptions { samples: Samples::Count(50), ..few.clone() };
-    /// let first = embed(&surface, &few, &())?;
-    ///
-    /// // Measures the distances from 30 samples, not from 50.
-    /// let more = embed(&surface, EmbedOptions::from(&many).reuse(&first), &())?;
-    /// assert_eq!(more.embedding, embed(&surface, &many, &())?.embedding);
-    /// # Ok::<(), canonform::Error>(())
-    /// ```
-    #[must_use]
-    pub fn reuse(self, earlier: &'a Embedded) -> Self {
-        Self { earlier: Earlier::Same(earlier), ..self }
     }
 
     /// Embeds `fine`, a finer mesh of the surface `coarse`, in the coordinates of its `form`: measures distances from the samples of
@@ -120,8 +87,8 @@ impl<'a> EmbedOptions<'a> {
     /// [`Error::NotThere`] if a sample has no vertex of the finer mesh near it, [`Error::NoExtension`], and
     /// [`Error::OtherSurface`] if `form` is not of `coarse`.
     pub fn finer(fine: &Surface, coarse: &Surface, form: &'a Embedded) -> Result<Self, Error> {
-        let earlier = Earlier::Coarser(Coarser::new(fine, coarse, form)?);
-        Ok(Self { earlier, ..Self::from(&form.options) })
+        let coarser = Some(Coarser::new(fine, coarse, form)?);
+        Ok(Self { coarser, ..Self::from(&form.options) })
     }
 }
 
@@ -156,7 +123,6 @@ impl<'a> EmbedOptions<'a> {
 ///
 /// # Errors
 /// [`Error::AllPairsTooLarge`], [`Error::EmbeddingTooLarge`], [`Error::Point`] for the first sample, [`Error::NoStress`],
-/// [`Error::OtherSurface`] if an earlier embedding has another number of vertices, or other distances between them,
 /// [`Error::Exceeded`], and the errors of the stages.
 pub fn embed<'a, 'b>(
     surface: impl Into<EmbedInput<'a>>,
@@ -164,7 +130,7 @@ pub fn embed<'a, 'b>(
     observer: &dyn Observer,
 ) -> Result<Embedded, Error> {
     let EmbedInput { intrinsic: surface, map } = surface.into();
-    let EmbedOptions { form, stress, earlier } = options.into();
+    let EmbedOptions { form, stress, coarser } = options.into();
     let start = Instant::now();
     let options = FormOptions { repair: map.repair, ..form.clone() }.normalized();
     let first = match options.first_sample {
@@ -185,20 +151,9 @@ pub fn embed<'a, 'b>(
         }
         surface => (options.geodesic.prepare(surface.as_ref(), observer)?, Some(surface)),
     };
-    let known = match &earlier {
-        Earlier::Same(earlier) => {
-            earlier.check_points(solver.n_vertices())?;
-            Some(&earlier.distances).filter(|_| options.geodesic == earlier.options.geodesic)
-        }
-        Earlier::None | Earlier::Coarser(_) => None,
-    };
-    if let Some(known) = known {
-        check_distances(solver.as_ref(), known)?;
-    }
     let solver = Observed { solver: solver.as_ref(), observer };
-    let reused = known.map(|known| KnownColumns { solver: &solver, known });
     let measurement = Measurement {
-        solver: reused.as_ref().map_or(&solver as &dyn DistanceSolver, |reused| reused),
+        solver: &solver,
         samples: options.samples,
         sampling: options.sampling,
         first,
@@ -207,9 +162,9 @@ pub fn embed<'a, 'b>(
         streams: options.method.streams(),
         seconds: start.elapsed().as_secs_f64().into(),
     };
-    let (outcome, extension) = match earlier {
-        Earlier::Coarser(coarser) => (coarser.place(&measurement)?, Some(coarser.extension)),
-        _ => (options.method.run(surface.as_deref(), options.dim, &measurement)?, None),
+    let (outcome, extension) = match coarser {
+        Some(coarser) => (coarser.place(&measurement)?, Some(coarser.extension)),
+        None => (options.method.run(surface.as_deref(), options.dim, &measurement)?, None),
     };
     let Outcome { embedding, distances, search, all, descent } = outcome;
     let (elapsed, geodesics) = (start.elapsed().as_secs_f64(), measurement.seconds.get());
@@ -260,23 +215,4 @@ pub fn embed<'a, 'b>(
         repair: map.report.clone(),
     };
     Ok(Embedded { options, embedding, distances, report, extension })
-}
-
-/// Distances on one surface differ by less than this share of the largest: what compilers and processors change.
-const SAME_DISTANCES: f64 = 1e-9;
-
-/// Refuses distances that were measured on another surface, by those from the first landmark.
-///
-/// # Errors
-/// [`Error::OtherSurface`].
-fn check_distances(solver: &dyn DistanceSolver, known: &LandmarkDistances) -> Result<(), Error> {
-    let Some(&first) = known.landmarks().first() else { return Ok(()) };
-    let (n_vertices, n_points) = (solver.n_vertices(), known.n_points());
-    let mut column = solver.budget().vector(n_vertices)?;
-    solver.distances_into(VertexId::from(first), &mut column)?;
-    let (known, most) = (known.column(0)?, SAME_DISTANCES * known.max());
-    match column.iter().zip(known.iter()).all(|(a, b)| (a - b).abs() <= most) {
-        true => Ok(()),
-        false => Err(Error::OtherSurface { n_vertices, n_points }),
-    }
 }

@@ -158,12 +158,11 @@ fn samples_on(fine: &Surface, coarse: &Surface, form: &Embedded) -> Result<Vec<u
 
 #[cfg(test)]
 mod tests {
-    use geodesics::{Method, Sampling};
+    use geodesics::Method;
     use mesh::shapes;
 
     use super::*;
-    use crate::form::{EmbedOptions, FormOptions, Samples, StressOptions, embed};
-    use mesh::shapes::lopsided_torus;
+    use crate::form::{EmbedOptions, FormOptions, Samples, embed};
 
     fn surface(mesh: &mesh::TriMesh) -> Surface {
         Surface::new(mesh, &Default::default(), &()).unwrap()
@@ -184,32 +183,6 @@ mod tests {
                 let gap = (row - coords.row(v)).norm() - (at - sheet.mesh().positions[v]).norm();
                 assert!(gap.abs() < 1e-7, "{point}, {v}: {gap:e}");
             }
-        }
-    }
-
-    #[test]
-    fn more_samples_are_added_without_measuring_the_first_again() {
-        let [surface, other] = [lopsided_torus(), shapes::icosphere(2)].map(|mesh| surface(&mesh));
-        for sampling in Sampling::ALL {
-            let of =
-                |n| FormOptions { samples: Samples::Count(n), sampling, seed: 3, ..FormOptions::default() };
-            let (few, many) = (of(20), of(45));
-            let few = embed(&surface, &few, &()).unwrap();
-            let many = EmbedOptions::from(&many).stress(StressOptions::default());
-            let all = embed(&surface, many.clone(), &()).unwrap();
-            let more = embed(&surface, many.reuse(&few), &()).unwrap();
-            assert_eq!(more.embedding, all.embedding, "{sampling:?}");
-            assert!(more.report.stress.is_some() && more.report.stress == all.report.stress);
-            let [more, all] = [more, all].map(|embedded| embedded.distances.to_matrix().unwrap());
-            assert_eq!(more, all, "{sampling:?}");
-        }
-        let usual = FormOptions::default();
-        let few = embed(&surface, &usual, &()).unwrap();
-        let mut bent = lopsided_torus();
-        bent.positions[7] += nalgebra::Vector3::repeat(0.05);
-        for other in [other, self::surface(&bent)] {
-            let fault = embed(&other, EmbedOptions::from(&usual).reuse(&few), &()).unwrap_err();
-            assert!(matches!(fault, Error::OtherSurface { .. }));
         }
     }
 

@@ -33,7 +33,7 @@ class Form(AsArray, Constant):
     """A surface, embedded so that straight-line distances approximate the distances along it.
 
     `numpy.asarray(form)` gives its points. A pickled form holds its points and its report; the distances of the landmarks, and what
-    `place`, `finer`, `align` and `reuse` need, are made again when they are first asked for.
+    `place`, `finer` and `align` need, are made again when they are first asked for.
 
     >>> form = cat.canonical_form(50)
     >>> form.points.shape, len(form.landmarks), form.normalized_stress < 0.2
@@ -53,7 +53,7 @@ class Form(AsArray, Constant):
             surface = self._surface._inner
             coarse = self._coarse
             finer = None if coarse is None else surface.finer(coarse._inner, self._settings)
-            self._made = finer or surface.canonical_form(self._settings, None)
+            self._made = finer or surface.canonical_form(self._settings)
         return self._made
 
     def _state(self) -> dict[str, Any]:

@@ -457,7 +457,6 @@ class Surface(Constant):
         geodesic: Geodesic = "fast-marching",
         stress: StressChoice = "auto",
         seed: int = 0,
-        reuse: Form | None = None,
         **call: Unpack[Call],
     ) -> Form:
         """Embed the surface so that straight-line distances approximate those along it.
@@ -479,9 +478,6 @@ class Surface(Constant):
             `Form.normalized_stress_interval` says how far an estimate is to be relied on.
         seed
             Of everything random, a whole number.
-        reuse
-            An earlier form of this surface. Distances that it has measured are looked up, so that further landmarks, another rank or
-            another method cost less; the result is the same.
 
         Raises `OptionError` if an option is not possible, or has no effect beside the others.
         EmbeddingError, LimitError
@@ -493,10 +489,7 @@ class Surface(Constant):
             n_landmarks=n_landmarks, method=method, n_components=n_components, geodesic=geodesic, stress=stress, seed=seed
         )
         with running(call):
-            if reuse is not None and not isinstance(reuse, Form):
-                raise OptionError(f"reuse={reuse!r} is not possible: give an earlier form of this surface")
-            earlier = None if reuse is None else reuse._inner
-            inner = self._inner.canonical_form(settings, earlier)
+            inner = self._inner.canonical_form(settings)
         return Form(inner, self, settings, self._name)
 
     def signature(
