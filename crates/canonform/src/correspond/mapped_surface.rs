@@ -13,6 +13,9 @@ use crate::form::embed;
 use base::Observer;
 use mesh::Surface;
 
+/// Vertices of each surface on which maps are refined before all others follow. A convention.
+const SPREAD: usize = 1000;
+
 /// A surface with everything that maps to other surfaces are found by.
 #[derive(Debug)]
 pub struct MappedSurface<S = Surface> {
@@ -36,7 +39,7 @@ impl<S: Borrow<Surface>> MappedSurface<S> {
         let embedded = embed(repaired, &options.form, observer)?;
         let form = embedded.form(repaired)?;
         let solver = options.form.geodesic.prepare(repaired.intrinsic(), observer)?;
-        let spread = SpreadSamples::new(solver.as_ref(), &embedded.distances, options.spread)?;
+        let spread = SpreadSamples::new(solver.as_ref(), &embedded.distances, SPREAD)?;
         let from_cut = from_cut(repaired, solver.as_ref())?;
         drop(solver);
         let spectrum = LaplaceSpectrum::new(repaired.intrinsic(), options.maps.eigenfunctions, observer)?;

@@ -74,8 +74,8 @@ pub(crate) fn matching(context: &Context<'_>) -> Result<Record> {
     let all: Vec<&MappedPair> = found.iter().flat_map(|(_, pairs)| pairs).collect();
     measure(ALL, &all, &mut measured);
     let mut record = context.record(&[], measured);
-    let made = [("eigenfunctions", options.maps.eigenfunctions.into()), ("spread", options.spread.into())];
-    record.provenance.options.extend(made.map(|(name, value)| (name.to_owned(), value)));
+    let eigenfunctions = options.maps.eigenfunctions.into();
+    record.provenance.options.insert("eigenfunctions".to_owned(), eigenfunctions);
     // Errors are known only where points correspond by their numbers.
     record.figures.extend(
         Some(panels(&found)).filter(|panels| !panels.is_empty()).map(|panels| plots("curves", panels)),
