@@ -84,120 +84,28 @@ pub enum Error {
         /// Path of its mesh.
         path: PathBuf,
     },
-    /// A shard that does not exist.
-    #[error("shard {shard} of {n_shards} does not exist; shards are numbered 1 to {n_shards}, or from 0")]
-    NoSuchShard {
-        /// The shard.
-        shard: usize,
-        /// Number of shards.
-        n_shards: usize,
-    },
-    /// Too many shapes for a matrix.
-    #[error("{n_shapes} shapes are too many for the distances between all pairs; the limit is {limit}")]
-    TooManyShapes {
-        /// Shapes of the index.
-        n_shapes: usize,
-        /// The most that are evaluated at once.
-        limit: usize,
-    },
-    /// A matrix of distances whose rows have no class.
-    #[error("{path}: the first line has no names, so the classes of the rows are unknown", path = path.display())]
-    NoNames {
-        /// The file.
-        path: PathBuf,
-    },
     /// A path to a point without a known distance.
     #[error("there is no path to {target}: it lies beyond the distance limit")]
     NoPath {
         /// The end of the path.
         target: String,
     },
-    /// An option of a description that is too small.
-    #[error("a description needs at least {least} {option}, got {value}")]
-    BadDescription {
-        /// Name of the option.
-        option: &'static str,
-        /// The value given.
-        value: usize,
-        /// The least value allowed.
-        least: usize,
+    /// Options, files and shapes that do not go together.
+    #[error("{what}")]
+    Refused {
+        /// What is wrong.
+        what: String,
+        /// What would help.
+        remedy: Option<Remedy>,
     },
-    /// A search for the number of samples by a method whose coordinates are no lengths.
-    #[error("how many samples {method} needs cannot be measured, since its coordinates are no lengths")]
-    NoStress {
-        /// Name of the embedding method.
-        method: &'static str,
+    /// Something that does not fit into memory.
+    #[error("{what}")]
+    TooLarge {
+        /// What, and how large it would be.
+        what: String,
+        /// What would help.
+        remedy: Remedy,
     },
-    /// A method that cannot place further points.
-    #[error("{method} cannot place further points in its embedding; nmds can")]
-    NoExtension {
-        /// Name of the embedding method.
-        method: &'static str,
-    },
-    /// A surface that an embedding is not of.
-    #[error("the embedding is of another surface: it has {n_points} points and this surface {n_vertices} vertices")]
-    OtherSurface {
-        /// Vertices of the surface after its repair.
-        n_vertices: usize,
-        /// Points of the embedding.
-        n_points: usize,
-    },
-    /// A finer mesh that has no vertex where the coarser one has a sample.
-    #[error(
-        "the finer mesh has no vertex near sample {sample} of the coarser one: the nearest is {gap:.4} away, and a mean edge is \
-         {allowed:.4} long; both must be meshes of one surface in one place"
-    )]
-    NotThere {
-        /// The sample, a vertex of the coarser input.
-        sample: VertexId,
-        /// Distance of the nearest vertex of the finer mesh, in mesh units.
-        gap: f64,
-        /// The largest distance allowed.
-        allowed: f64,
-    },
-    /// Too little memory for distances between all pairs, a block at a time.
-    #[error(
-        "distances between all pairs of {n_vertices} vertices need at least {needed} bytes of memory at once, more \
-         than the {limit} allowed"
-    )]
-    MemoryTooSmall {
-        /// Vertices of the input.
-        n_vertices: usize,
-        /// The least that is needed, in bytes.
-        needed: usize,
-        /// The limit, in bytes.
-        limit: usize,
-    },
-    /// An embedding that would not fit into memory even with its distances in a file.
-    #[error(
-        "embedding {n_vertices} vertices needs about {needed} bytes of memory with distances in a temporary file, more \
-         than the {limit} allowed, which are enough for {fits} vertices"
-    )]
-    EmbeddingTooLarge {
-        /// Vertices of the surface.
-        n_vertices: usize,
-        /// The least that is needed, in bytes.
-        needed: usize,
-        /// The limit, in bytes.
-        limit: usize,
-        /// The number of vertices that the limit is enough for.
-        fits: usize,
-    },
-    /// Distances that would not fit into memory.
-    #[error(
-        "the distances between {n_vertices} vertices need {needed_mib} MiB, more than the {limit_mib} MiB allowed"
-    )]
-    AllPairsTooLarge {
-        /// Vertices of the surface.
-        n_vertices: usize,
-        /// Memory for the matrix.
-        needed_mib: usize,
-        /// The limit.
-        limit_mib: usize,
-    },
-    /// What is known of a map does not fit the meshes.
-    #[error("{0}")]
-    UnusableMap(String),
     /// A folder that files cannot be moved into, or a journal by which they cannot be put back.
     #[error("{path}: {what}", path = path.display())]
     Move {
@@ -226,9 +134,6 @@ pub enum Error {
     /// A file that is no distance field, or a damaged one.
     #[error(transparent)]
     Field(FieldError),
-    /// A query that is to be taken as a part, but of which the description as a whole is known only.
-    #[error("a query can be ranked as a part only by its mesh, not by a description of the whole query")]
-    NoPart,
 }
 
 /// What a user can do about an [`Error`], in [words](Self::in_words) of a program.
@@ -367,6 +272,10 @@ impl Remedy {
 }
 
 impl Error {
+    pub(crate) fn refused(what: impl Into<String>) -> Self {
+        Self::Refused { what: what.into(), remedy: None }
+    }
+
     /// What would help, if it depends on the interface of the program; other advice is part of the message.
     pub fn remedy(&self) -> Option<Remedy> {
         Some(match self {
@@ -378,21 +287,16 @@ impl Error {
             Self::Descriptor(DescriptorError::NotThreeDimensional { .. }) => Remedy::UseThreeDimensions,
             Self::Geodesic(GeodesicError::NotFactorized(_)) => Remedy::UseFastMarching,
             Self::Geodesic(GeodesicError::NoPath { .. }) | Self::NoPath { .. } => Remedy::RaiseMaxDistance,
-            Self::AllPairsTooLarge { .. } => Remedy::UseNystrom,
-            Self::NoStress { .. } => Remedy::GiveSamples,
-            Self::MemoryTooSmall { .. }
-            | Self::EmbeddingTooLarge { .. }
-            | Self::Exceeded(Exceeded::Memory { .. }) => Remedy::RaiseMemory,
+            Self::Refused { remedy, .. } => return *remedy,
+            Self::TooLarge { remedy, .. } => *remedy,
+            Self::Exceeded(Exceeded::Memory { .. }) => Remedy::RaiseMemory,
             Self::Exceeded(Exceeded::Time { .. }) => Remedy::RaiseTimeLimit,
-            Self::NoNames { .. } | Self::Retrieval(RetrievalError::NothingToScore { .. }) => {
-                Remedy::GiveLabels
-            }
+            Self::Retrieval(RetrievalError::NothingToScore { .. }) => Remedy::GiveLabels,
             Self::AlreadyThere { .. } => Remedy::ReplaceShape,
             Self::MeshGone { .. } | Self::MeshChanged { .. } => Remedy::RestoreMesh,
             Self::UnknownOptions { .. } => Remedy::BuildIndexAgain,
             Self::Index(fault) => return Remedy::from_index(fault),
             Self::Field(_) => Remedy::BuildFieldAgain,
-            Self::TooManyShapes { .. } => Remedy::EvaluateShard,
             Self::Collection(CollectionError::NotOneMesh { n_meshes: 2.., .. }) => Remedy::NameMember,
             _ => return None,
         })

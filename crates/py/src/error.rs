@@ -50,24 +50,14 @@ impl Exception {
             Error::Mesh(MeshError::Io(file)) | Error::File(file) => Self::of_file(file),
             Error::Mesh(_) | Error::Collection(CollectionError::NoShapes { .. }) => Self::MeshError,
             Error::Exceeded(Exceeded::Memory { .. } | Exceeded::Allocation { .. })
-            | Error::MemoryTooSmall { .. }
-            | Error::EmbeddingTooLarge { .. }
-            | Error::AllPairsTooLarge { .. }
-            | Error::TooManyShapes { .. } => Self::MemoryLimitError,
+            | Error::TooLarge { .. } => Self::MemoryLimitError,
             Error::Exceeded(Exceeded::Time { .. }) => Self::TimeLimitError,
             Error::Exceeded(_) => Self::LimitError,
             Error::Point(_) | Error::NoPath { .. } | Error::Geodesic(GeodesicError::NoSuchVertex { .. }) => {
                 Self::PointError
             }
             Error::Field(_) => Self::FileError,
-            Error::BadDescription { .. }
-            | Error::NoSuchShard { .. }
-            | Error::UnusableMap(_)
-            | Error::NoStress { .. }
-            | Error::NoExtension { .. }
-            | Error::OtherSurface { .. }
-            | Error::NotThere { .. }
-            | Error::ContradictoryLandmarks { .. } => Self::OptionError,
+            Error::Refused { .. } | Error::ContradictoryLandmarks { .. } => Self::OptionError,
             Error::Index(IndexError::NoSuchShape { .. }) => Self::NoSuchShapeError,
             Error::Index(IndexError::Io { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => {
                 Self::MissingFileError

@@ -49,7 +49,7 @@ pub struct Correspondence {
 /// ```
 ///
 /// # Errors
-/// [`Error::Point`] and [`Error::UnusableMap`], if what is known of the map does not fit the meshes;
+/// [`Error::Point`] and [`Error::Refused`], if what is known of the map does not fit the meshes;
 /// [`Error::ContradictoryLandmarks`]; [`Error::Descriptor`] and [`Error::Exceeded`].
 pub fn correspond<S: Borrow<Surface>>(
     a: &MappedSurface<S>,
@@ -64,7 +64,7 @@ pub fn correspond<S: Borrow<Surface>>(
 /// See [`maps::score_map`].
 ///
 /// # Errors
-/// As [`correspond`]; [`Error::UnusableMap`], if fewer than four vertices have a partner.
+/// As [`correspond`]; [`Error::Refused`], if fewer than four vertices have a partner.
 pub fn score_map<S: Borrow<Surface>>(
     a: &MappedSurface<S>,
     b: &MappedSurface<S>,
@@ -75,8 +75,8 @@ pub fn score_map<S: Borrow<Surface>>(
         Ok(maps::score_map(&a.shape, &b.shape, known, &options.maps, observer)?.into_iter().collect())
     })?;
     match found.maps.is_empty() {
-        true => Err(Error::UnusableMap(
-            "too few vertices have a partner; give a map of at least four vertices to score it".into(),
+        true => Err(Error::refused(
+            "too few vertices have a partner; give a map of at least four vertices to score it",
         )),
         false => Ok(found),
     }

@@ -10,7 +10,7 @@ use crate::error::Error;
 /// What is known of a map, in the numbers of the repaired meshes.
 ///
 /// # Errors
-/// [`Error::Point`] for a landmark that a surface does not have; [`Error::UnusableMap`] for an initial map or functions of the
+/// [`Error::Point`] for a landmark that a surface does not have; [`Error::Refused`] for an initial map or functions of the
 /// wrong length, or that are not finite.
 pub(super) fn repaired(
     known: &KnownMap,
@@ -25,7 +25,7 @@ pub(super) fn repaired(
         None => None,
         Some([f, g]) if f.ncols() != g.ncols() => {
             let counts = format!("{} and {}", f.ncols(), g.ncols());
-            return Err(Error::UnusableMap(format!(
+            return Err(Error::refused(format!(
                 "{counts} functions were given for the two surfaces; give as many for one as for the other"
             )));
         }
@@ -61,9 +61,8 @@ fn initial(given: &[Option<VertexId>], [a, b]: [&Surface; 2]) -> Result<Vec<Opti
         }
     }
     match found.iter().flatten().count() {
-        0 => Err(Error::UnusableMap(
-            "the initial map gives no vertex a partner; give the number of a vertex of the second mesh for some of them"
-                .into(),
+        0 => Err(Error::refused(
+            "the initial map gives no vertex a partner; give the number of a vertex of the second mesh for some of them",
         )),
         _ => Ok(found),
     }
@@ -77,7 +76,7 @@ fn of_repaired(functions: &Matrix, surface: &Surface) -> Result<Matrix, Error> {
     let found = functions.select_rows(&rows);
     match found.iter().position(|value| !value.is_finite()) {
         None => Ok(found),
-        Some(at) => Err(Error::UnusableMap(format!(
+        Some(at) => Err(Error::refused(format!(
             "function {} is not finite at vertex {}; give finite numbers",
             at / found.nrows(),
             rows[at % found.nrows()]
@@ -88,7 +87,7 @@ fn of_repaired(functions: &Matrix, surface: &Surface) -> Result<Matrix, Error> {
 fn check_rows(what: &str, n_rows: usize, surface: &Surface) -> Result<(), Error> {
     match surface.n_input_vertices() {
         n if n == n_rows => Ok(()),
-        n => Err(Error::UnusableMap(format!(
+        n => Err(Error::refused(format!(
             "{what} has {n_rows} rows, but the mesh has {n} vertices; give one row for each vertex"
         ))),
     }

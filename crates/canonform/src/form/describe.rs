@@ -39,7 +39,7 @@ const MAX_VERTICES: usize = 30_000;
 /// A surface that was repaired in another way than the options say keeps its repair.
 ///
 /// # Errors
-/// [`Error::BadDescription`], [`Error::Exceeded`] and those of the stages: a mesh without area or without extent has no
+/// [`Error::Refused`], [`Error::Exceeded`] and those of the stages: a mesh without area or without extent has no
 /// description.
 pub fn describe(
     surface: &Surface,

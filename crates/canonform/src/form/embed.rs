@@ -16,7 +16,7 @@ use super::options::FormOptions;
 use super::outcome::Outcome;
 use super::report::{EmbedReport, SecondsReport};
 use super::stress::{SolvedRows, StressChoice, StressOptions, StressReport};
-use crate::error::Error;
+use crate::error::{Error, Remedy};
 
 /// What [`embed`] embeds: a [`Surface`], or the parts of one, [without its mesh](Surface::into_parts), which needs less memory.
 pub struct EmbedInput<'a> {
@@ -84,8 +84,8 @@ impl<'a> EmbedOptions<'a> {
     /// ```
     ///
     /// # Errors
-    /// [`Error::NotThere`] if a sample has no vertex of the finer mesh near it, [`Error::NoExtension`], and
-    /// [`Error::OtherSurface`] if `form` is not of `coarse`.
+    /// [`Error::Refused`] if a sample has no vertex of the finer mesh near it, if the method of `form` cannot place further points,
+    /// or if `form` is not of `coarse`.
     pub fn finer(fine: &Surface, coarse: &Surface, form: &'a Embedded) -> Result<Self, Error> {
         let coarser = Some(Coarser::new(fine, coarse, form)?);
         Ok(Self { coarser, ..Self::from(&form.options) })
@@ -122,8 +122,8 @@ impl<'a> EmbedOptions<'a> {
 /// ```
 ///
 /// # Errors
-/// [`Error::AllPairsTooLarge`], [`Error::EmbeddingTooLarge`], [`Error::Point`] for the first sample, [`Error::NoStress`],
-/// [`Error::Exceeded`], and the errors of the stages.
+/// [`Error::TooLarge`], [`Error::Point`] for the first sample, [`Error::Refused`] for a search for the number of samples by a method
+/// whose coordinates are no lengths, [`Error::Exceeded`], and the errors of the stages.
 pub fn embed<'a, 'b>(
     surface: impl Into<EmbedInput<'a>>,
     options: impl Into<EmbedOptions<'b>>,
@@ -138,7 +138,11 @@ pub fn embed<'a, 'b>(
         FirstSample::Vertex(input) => FirstSample::Vertex(map.repaired_vertex(input)?),
     };
     if !options.method.has_unit() && options.samples == Samples::Auto {
-        return Err(Error::NoStress { method: options.method.name() });
+        let what = format!(
+            "how many samples {} needs cannot be measured, since its coordinates are no lengths",
+            options.method.name()
+        );
+        return Err(Error::Refused { what, remedy: Some(Remedy::GiveSamples) });
     }
     if options.method.streams() {
         plan(surface.n_vertices(), options.samples).check(&observer.budget())?;

@@ -16,22 +16,30 @@ impl Embedded {
     /// Refuses a surface of another number of vertices than the embedding is of.
     ///
     /// # Errors
-    /// [`Error::OtherSurface`].
+    /// [`Error::Refused`].
     pub(super) fn check_points(&self, n_vertices: usize) -> Result<(), Error> {
         let n_points = self.embedding.n_points();
-        if n_vertices == n_points { Ok(()) } else { Err(Error::OtherSurface { n_vertices, n_points }) }
+        if n_vertices == n_points {
+            return Ok(());
+        }
+        Err(Error::refused(format!(
+            "the embedding is of another surface: it has {n_points} points and this surface {n_vertices} vertices"
+        )))
     }
 
     /// The map that places further points by their distances to the samples.
     ///
     /// # Errors
-    /// [`Error::NoExtension`] unless the method is NMDS.
+    /// [`Error::Refused`] unless the method is NMDS.
     pub fn extension(&self) -> Result<OutOfSample, Error> {
         if let Some(extension) = &self.extension {
             return Ok(extension.clone());
         }
         let EmbedMethod::Nystrom { mut regularization } = self.options.method else {
-            return Err(Error::NoExtension { method: self.options.method.name() });
+            let method = self.options.method.name();
+            return Err(Error::refused(format!(
+                "{method} cannot place further points in its embedding; nmds can"
+            )));
         };
         if let Regularization::LowRank { rank } = &mut regularization {
             *rank = Some(self.embedding.rank);
@@ -62,7 +70,7 @@ impl Embedded {
     /// ```
     ///
     /// # Errors
-    /// [`Error::NoExtension`], [`Error::OtherSurface`], [`Error::Point`].
+    /// [`Error::Refused`] for another surface or method than NMDS, [`Error::Point`].
     pub fn place(&self, surface: &Surface, points: &[InputPoint]) -> Result<Matrix, Error> {
         self.check_points(surface.mesh().n_vertices())?;
         let located = points.iter().map(|point| surface.locate(point)).collect::<Result<Vec<_>, _>>()?;
@@ -120,7 +128,7 @@ pub(super) struct Coarser<'a> {
 
 impl<'a> Coarser<'a> {
     /// # Errors
-    /// [`Error::NotThere`], [`Error::NoExtension`], [`Error::OtherSurface`].
+    /// [`Error::Refused`].
     pub(super) fn new(fine: &Surface, coarse: &Surface, form: &'a Embedded) -> Result<Self, Error> {
         form.check_points(coarse.mesh().n_vertices())?;
         let extension = form.extension()?;
@@ -146,11 +154,12 @@ fn samples_on(fine: &Surface, coarse: &Surface, form: &Embedded) -> Result<Vec<u
         let gaps = positions.iter().map(|position| (position - place).norm()).enumerate();
         match gaps.min_by(|a, b| a.1.total_cmp(&b.1)) {
             Some((vertex, gap)) if gap <= allowed => Ok(vertex),
-            nearest => Err(Error::NotThere {
-                sample: coarse.input_vertex(VertexId::from(sample)),
-                gap: nearest.map_or(f64::INFINITY, |(_, gap)| gap),
-                allowed,
-            }),
+            nearest => Err(Error::refused(format!(
+                "the finer mesh has no vertex near sample {} of the coarser one: the nearest is {:.4} away, and a mean edge is \
+                 {allowed:.4} long; both must be meshes of one surface in one place",
+                coarse.input_vertex(VertexId::from(sample)),
+                nearest.map_or(f64::INFINITY, |(_, gap)| gap),
+            ))),
         }
     };
     form.distances.landmarks().iter().map(near).collect()
@@ -193,10 +202,15 @@ mod tests {
         let moved = testkit::moved(&shapes::icosphere(3), |p| p + nalgebra::Vector3::x());
         let finer =
             |fine: &Surface, form: &Embedded| embed(fine, EmbedOptions::finer(fine, &coarse, form)?, &());
-        assert!(matches!(finer(&surface(&moved), &form), Err(Error::NotThere { .. })));
+        let refused = |found: Result<Embedded, Error>| found.unwrap_err().to_string();
+        assert!(refused(finer(&surface(&moved), &form)).contains("has no vertex near sample"));
         let options = FormOptions { method: EmbedMethod::Landmark, ..FormOptions::default() };
         let other = embed(&coarse, &options, &()).unwrap();
-        assert!(matches!(finer(&fine, &other), Err(Error::NoExtension { method: "landmark" })));
+        assert!(refused(finer(&fine, &other)).starts_with("landmark cannot place"));
+        assert!(
+            refused(finer(&coarse, &embed(&fine, &FormOptions::default(), &()).unwrap()))
+                .contains("642 points")
+        );
         let found = finer(&fine, &form).unwrap();
         let placed = found.place(&fine, &["300".parse().unwrap()]).unwrap();
         assert!((placed.row(0) - found.embedding.coords.row(300)).norm() < 1e-12);

@@ -107,13 +107,14 @@ struct Provenance {
 
 impl DescribeOptions {
     /// # Errors
-    /// [`DescriptorError::NotThreeDimensional`]; [`Error::BadDescription`] names an option that is too small.
+    /// [`DescriptorError::NotThreeDimensional`]; [`Error::Refused`] names an option that is too small.
     pub fn validate(&self) -> Result<(), Error> {
         self.form.validate()?;
         let samples = self.form.samples.count_or(usize::MAX);
         for (option, value, least) in [("samples", samples, 8), ("points", self.points, 4)] {
             if value < least {
-                return Err(Error::BadDescription { option, value, least });
+                let what = format!("a description needs at least {least} {option}, got {value}");
+                return Err(Error::refused(what));
             }
         }
         Ok(())

@@ -35,7 +35,7 @@ use mesh::Surface;
 /// ```
 ///
 /// # Errors
-/// [`Error::BadDescription`], [`Error::Exceeded`] and those of measuring distances.
+/// [`Error::Refused`], [`Error::Exceeded`] and those of measuring distances.
 pub fn describe_part(
     surface: &Surface,
     options: &DescribeOptions,

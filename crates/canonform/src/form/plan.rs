@@ -3,7 +3,7 @@
 use base::Budget;
 use linalg::ColumnStore;
 
-use crate::error::Error;
+use crate::error::{Error, Remedy};
 
 /// Most memory for distances that are held at once, in bytes, unless the budget says how much.
 pub const DISTANCES_LIMIT: usize = 4 << 30;
@@ -51,20 +51,26 @@ impl Plan {
     /// Refuses what does not fit into memory even with distances in a file.
     ///
     /// # Errors
-    /// [`Error::EmbeddingTooLarge`].
+    /// [`Error::TooLarge`].
     pub(super) fn check(self, budget: &Budget) -> Result<(), Error> {
         let limit = budget.memory().unwrap_or(usize::MAX);
         if budget.spill().is_none() || self.rest() <= limit {
             return Ok(());
         }
         let fits = limit.saturating_sub(self.matrices) / self.per_vertex;
-        Err(Error::EmbeddingTooLarge { n_vertices: self.n_vertices, needed: self.rest(), limit, fits })
+        let what = format!(
+            "embedding {} vertices needs about {} bytes of memory with distances in a temporary file, more than the {limit} \
+             allowed, which are enough for {fits} vertices",
+            self.n_vertices,
+            self.rest()
+        );
+        Err(Error::TooLarge { what, remedy: Remedy::RaiseMemory })
     }
 
     /// A store for the distances: in memory if they fit, else in a file if the budget names a folder for it.
     ///
     /// # Errors
-    /// As [`check`](Self::check); [`Error::AllPairsTooLarge`] and [`Error::Exceeded`] if the budget names no folder;
+    /// As [`check`](Self::check); [`Error::Exceeded`] if the budget names no folder;
     /// [`Error::File`].
     pub(super) fn store(self, budget: &Budget) -> Result<ColumnStore, Error> {
         let Some(folder) = budget.spill() else {
@@ -94,13 +100,15 @@ pub(super) fn check_memory(n_vertices: usize, n_columns: usize, budget: &Budget)
         return Ok(());
     }
     let [needed_mib, limit_mib] = [needed, DISTANCES_LIMIT].map(|bytes| bytes >> 20);
-    Err(Error::AllPairsTooLarge { n_vertices, needed_mib, limit_mib })
+    let what = format!(
+        "the distances between {n_vertices} vertices need {needed_mib} MiB, more than the {limit_mib} MiB allowed"
+    );
+    Err(Error::TooLarge { what, remedy: Remedy::UseNystrom })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::Remedy;
 
     #[test]
     fn distances_that_do_not_fit_go_to_a_file_and_what_fits_is_named() {
@@ -110,7 +118,12 @@ mod tests {
         assert!(!plan.store(&budget(4 << 30)).unwrap().is_in_file());
         assert!(plan.store(&budget(plan.rest())).unwrap().is_in_file());
         let error = plan.store(&budget(plan.rest() / 2)).unwrap_err();
-        let Error::EmbeddingTooLarge { needed, fits, .. } = error else { panic!("{error}") };
+        let number = |after: &str| -> usize {
+            let text = error.to_string();
+            let rest = text.split(after).nth(1).unwrap_or_else(|| panic!("{text}"));
+            rest.split(' ').next().unwrap().parse().unwrap()
+        };
+        let (needed, fits) = (number("needs about "), number("enough for "));
         assert_eq!((needed, error.remedy()), (plan.rest(), Some(Remedy::RaiseMemory)));
         assert!(Plan::new(fits, 20, 0).store(&budget(plan.rest() / 2)).is_ok());
         // Without a limit, only what no usual machine has room for goes to a file.
@@ -118,7 +131,7 @@ mod tests {
         assert!(!plan.store(&open).unwrap().is_in_file());
         assert!(Plan::new(10_000_000, 100, 0).store(&open).unwrap().is_in_file());
         let nowhere = Plan::new(10_000_000, 100, 0).store(&Budget::unlimited()).unwrap_err();
-        assert!(matches!(nowhere, Error::AllPairsTooLarge { .. }));
+        assert_eq!(nowhere.remedy(), Some(Remedy::UseNystrom));
         assert!(check_memory(10_000_000, 100, &Budget::unlimited().with_memory(8_000_000_000)).is_ok());
     }
 }

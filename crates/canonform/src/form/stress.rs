@@ -135,7 +135,7 @@ impl SharedStress {
     /// all pairs up to 5,000 vertices.
     ///
     /// # Errors
-    /// [`Error::AllPairsTooLarge`], [`Error::Exceeded`] and those of the solver.
+    /// [`Error::TooLarge`], [`Error::Exceeded`] and those of the solver.
     pub fn new(
         surface: &Surface,
         method: Method,

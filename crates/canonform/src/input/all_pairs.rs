@@ -8,7 +8,7 @@ use linalg::Matrix;
 use serde::Serialize;
 use surface::VertexId;
 
-use crate::error::Error;
+use crate::error::{Error, Remedy};
 use base::Observer;
 use mesh::Surface;
 
@@ -45,13 +45,17 @@ impl<'a> AllPairs<'a> {
     /// itself needs.
     ///
     /// # Errors
-    /// [`Error::MemoryTooSmall`] if two rows do not fit.
+    /// [`Error::TooLarge`] if two rows do not fit.
     pub fn new(surface: &'a Surface, solver: &'a dyn DistanceSolver, memory: usize) -> Result<Self, Error> {
         let n_vertices = surface.n_input_vertices();
         let rows = memory / (BYTES * n_vertices.max(1));
         if rows < 2 {
             let needed = 2 * BYTES * n_vertices;
-            return Err(Error::MemoryTooSmall { n_vertices, needed, limit: memory });
+            let what = format!(
+                "distances between all pairs of {n_vertices} vertices need at least {needed} bytes of memory at once, more \
+                 than the {memory} allowed"
+            );
+            return Err(Error::TooLarge { what, remedy: Remedy::RaiseMemory });
         }
         let batch = (rows / 4).clamp(1, BATCH);
         Ok(Self { surface, solver, block: (rows - batch).min(n_vertices), batch })
@@ -167,7 +171,6 @@ mod tests {
     use mesh::{RepairOptions, TriMesh, shapes};
 
     use super::*;
-    use crate::error::Remedy;
 
     fn surface(mesh: &TriMesh) -> Surface {
         Surface::new(mesh, &RepairOptions::default(), &()).unwrap()
@@ -222,7 +225,10 @@ mod tests {
         let surface = surface(&shapes::grid(4, 4, 1.0));
         let solver = Method::default().prepare(surface.intrinsic(), &()).unwrap();
         let error = AllPairs::new(&surface, solver.as_ref(), 2 * 16 * BYTES - 1).unwrap_err();
-        assert!(matches!(error, Error::MemoryTooSmall { needed: 256, limit: 255, .. }));
+        assert!(
+            error.to_string().contains("at least 256 bytes of memory at once, more than the 255"),
+            "{error}"
+        );
         assert_eq!(error.remedy(), Some(Remedy::RaiseMemory));
     }
 }

@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use super::agreement::Agreement;
 use super::record::{missing, options_of};
-use crate::error::Error;
+use crate::error::{Error, Remedy};
 use base::Observer;
 use collection::{CollectionError, LabelSource, Row, TextTable, label_of};
 
@@ -78,7 +78,7 @@ pub struct IndexEvaluation {
 /// Scores an index by the distances between all pairs of its shapes. Shapes without a class are left out.
 ///
 /// # Errors
-/// [`Error::TooManyShapes`], [`Error::Index`], [`Error::Retrieval`].
+/// [`Error::TooLarge`], [`Error::Index`], [`Error::Retrieval`].
 pub fn evaluate_index(
     path: &Path,
     options: &EvaluateOptions<'_>,
@@ -89,7 +89,9 @@ pub fn evaluate_index(
     let n = index.len();
     let limit = observer.budget().memory().map_or(MAX_SHAPES, |bytes| (bytes / size_of::<f64>()).isqrt());
     if n > limit {
-        return Err(Error::TooManyShapes { n_shapes: n, limit });
+        let what =
+            format!("{n} shapes are too many for the distances between all pairs; the limit is {limit}");
+        return Err(Error::TooLarge { what, remedy: Remedy::EvaluateShard });
     }
     let (mut rows, mut shapes) = (Vec::with_capacity(n), Vec::with_capacity(n));
     let mut unlabelled = None;
@@ -156,7 +158,7 @@ pub fn evaluate_index(
 /// ```
 ///
 /// # Errors
-/// [`Error::Collection`], [`Error::NoNames`], [`Error::Retrieval`].
+/// [`Error::Collection`], [`Error::Refused`] for a matrix without classes, [`Error::Retrieval`].
 pub fn evaluate_matrix(path: &Path, options: &EvaluateOptions<'_>) -> Result<Evaluation, Error> {
     let EvaluateOptions { labels, knn_k, rank_by, .. } = *options;
     let (rows, names) = square_matrix(&TextTable::read(path)?)?;
@@ -172,7 +174,11 @@ pub fn evaluate_matrix(path: &Path, options: &EvaluateOptions<'_>) -> Result<Eva
             }
         }
         (Some(LabelSource::File(file)), None) => file.in_order.clone(),
-        (_, None) => return Err(Error::NoNames { path: path.to_owned() }),
+        (_, None) => {
+            let what = "the first line has no names, so the classes of the rows are unknown";
+            let what = format!("{}: {what}", path.display());
+            return Err(Error::Refused { what, remedy: Some(Remedy::GiveLabels) });
+        }
     };
     // Rows that a label file does not name are left out; missing lines of a file without names are an error.
     let is_kept = |i: &usize| classes.get(*i).is_none_or(|class| !class.is_empty());

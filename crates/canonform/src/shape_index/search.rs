@@ -178,7 +178,7 @@ impl ShapeSearch {
     ///
     /// # Errors
     /// [`Error::Index`], also for a query that was described with other options than the shapes of the index;
-    /// [`Error::NoPart`] for a query that is ranked as a part and has none; [`Error::Exceeded`].
+    /// [`Error::Refused`] for a query that is ranked as a part and has none; [`Error::Exceeded`].
     pub fn search(
         &self,
         query: &Query,
@@ -355,7 +355,9 @@ impl ShapeSearch {
     /// [`IndexError::Damaged`] if what is measured is not stored of the shape.
     fn measured(&self, query: &Query, rank: SearchRank, id: &str) -> Result<OrderedBy, Error> {
         if rank == SearchRank::Part {
-            let part = query.part.as_ref().ok_or(Error::NoPart)?;
+            let part = query.part.as_ref().ok_or_else(|| {
+                Error::refused("ranking by part needs the mesh of the query; a description is not enough")
+            })?;
             let areas = self.index.vector(id, "disc_areas")?;
             let areas = areas.and_then(|numbers| DiscAreas::from_numbers(&numbers));
             let areas = areas.ok_or_else(|| missing(&self.index.path, id, "disc areas"))?;
@@ -565,7 +567,8 @@ mod tests {
         fs::remove_file(folder.path().join("box0.tri")).unwrap();
         assert!(matches!(search.query_of("box0", &options, &()), Err(Error::MeshGone { .. })));
         let query = search.query(&part, ("", None), &SearchOptions::default(), &()).unwrap();
-        assert!(matches!(search.search(&query, &options, &()), Err(Error::NoPart)));
+        let fault = search.search(&query, &options, &()).unwrap_err().to_string();
+        assert!(fault.contains("needs the mesh of the query"), "{fault}");
     }
 
     #[test]
