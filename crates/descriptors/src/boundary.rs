@@ -80,25 +80,3 @@ impl Boundary {
         [Self::CERTAIN, 1.0 - Self::CERTAIN].map(|probability| self.distance(probability))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_boundary_gives_the_probability_of_each_distance_and_what_none_proves_is_never_certain() {
-        let ninth = 9f64.powf(0.2);
-        for (range, gap) in [([0.0, 1.0], [2.0 / ninth, 2.0 * ninth]), ([0.2, 0.8], [0.0, f64::INFINITY])] {
-            let boundary = Boundary { range, ..Boundary::new(2.0, 5.0) };
-            for (distance, expected) in [(0.0, range[1]), (2.0, 0.5), (f64::INFINITY, range[0])] {
-                assert!((boundary.probability(distance) - expected).abs() < 1e-12);
-            }
-            for probability in [0.3, 0.5, 0.7] {
-                assert!((boundary.probability(boundary.distance(probability)) - probability).abs() < 1e-12);
-            }
-            for (found, expected) in boundary.gap().into_iter().zip(gap) {
-                assert!(found == expected || (found - expected).abs() < 1e-12);
-            }
-        }
-    }
-}

@@ -36,34 +36,3 @@ pub(super) fn quantiles(samples: impl Iterator<Item = (f64, f64)>, n: usize) -> 
         })
         .collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn quantiles_of_few_samples_leave_out_what_is_no_number_or_has_no_mass() {
-        let samples = [(3.0, 1e-3), (1.0, 3e-3), (f64::NAN, 1.0), (7.0, 0.0)];
-        let [low, high] = quantiles(samples.into_iter(), 2)[..] else { panic!() };
-        assert!(low == 1.0 && high > 1.0 && high <= 3.0);
-        assert_eq!(quantiles([(5.0, 2.0)].into_iter(), 3), [5.0; 3]);
-        assert_eq!(quantiles(std::iter::empty(), 3), [0.0; 3]);
-    }
-
-    #[test]
-    fn the_distribution_is_linear_between_the_middles_of_samples() {
-        // Half of the mass of each lies below its value: .5 of 7 below 1, 3 below 4, 6 below 9.
-        let found = quantiles([(9.0, 2.0), (1.0, 1.0), (4.0, 4.0)].into_iter(), 4);
-        let middle = |share: f64| {
-            if share < 3.0 {
-                1.0 + 3.0 * (share - 0.5) / 2.5
-            } else {
-                f64::min(4.0 + 5.0 * (share - 3.0) / 3.0, 9.0)
-            }
-        };
-        for (bin, found) in found.into_iter().enumerate() {
-            let expected = middle((bin as f64 + 0.5) / 4.0 * 7.0);
-            assert!((found - expected).abs() < 1e-12, "{bin}: {found} {expected}");
-        }
-    }
-}
