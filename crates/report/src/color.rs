@@ -107,34 +107,3 @@ pub fn from_linear(light: f32) -> u8 {
     let c = if l <= 0.003_130_8 { 12.92 * l } else { 1.055 * l.powf(1.0 / 2.4) - 0.055 };
     (c * 255.0).round() as u8
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn srgb_to_linear_and_back_is_the_identity_on_every_byte() {
-        for c in 0..=255 {
-            assert_eq!(from_linear(to_linear(c)), c);
-        }
-    }
-
-    #[test]
-    fn the_color_map_is_linear_between_its_stops() {
-        let [stops, middle] = [perceptual_stops(), [perceptual(1.5 / 7.0); 8]];
-        assert_eq!(middle[0], mix(stops[1], stops[2], 0.5));
-    }
-
-    #[test]
-    fn a_scale_spans_the_finite_values() {
-        let color = color_scale(&[3.0, f64::NAN, 1.0, f64::INFINITY, 2.0]);
-        assert_eq!([1.0, 2.0, 3.0].map(color), [0.0, 0.5, 1.0].map(perceptual));
-        let color = color_scale(&[f64::INFINITY, 1.0, 2.0]);
-        assert_eq!([color(f64::NAN), color(f64::INFINITY)], [perceptual(f64::NAN); 2]);
-        // Without a range it is dark.
-        assert_eq!(color_scale(&[])(f64::NAN), perceptual(f64::NAN));
-        assert_eq!(color_scale(&[5.0; 3])(5.0), perceptual(0.0));
-        let wide = color_scale(&[f64::MIN, f64::MAX]);
-        assert_eq!([f64::MIN, 0.0, f64::MAX].map(wide), [0.0, 0.5, 1.0].map(perceptual));
-    }
-}

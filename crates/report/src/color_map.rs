@@ -103,38 +103,3 @@ impl FromStr for ColorMap {
         found.ok_or_else(|| format!("there is no color map `{name}`; choose from {}", names.join(", ")))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::color::to_linear;
-
-    fn luminance(color: Rgb) -> f32 {
-        let [r, g, b] = color.map(to_linear);
-        0.2126 * r + 0.7152 * g + 0.0722 * b
-    }
-
-    #[test]
-    fn maps_read_back_by_name_and_have_their_ends() {
-        for &map in ColorMap::VARIANTS {
-            assert_eq!(<&str>::from(map).parse::<ColorMap>(), Ok(map));
-            assert_eq!([map.color(-1.0), map.color(f64::INFINITY)], [map.color(0.0), map.color(1.0)]);
-            assert_eq!(map.color(f64::NAN), [160; 3]);
-        }
-        assert!("jet".parse::<ColorMap>().unwrap_err().contains("viridis, magma"));
-        assert_eq!([0.0, 1.0].map(|t| ColorMap::Magma.color(t)), [[0, 0, 4], [252, 253, 191]]);
-        assert_eq!([0.0, 1.0].map(|t| ColorMap::Turbo.color(t)), [[48, 18, 59], [122, 4, 3]]);
-    }
-
-    #[test]
-    fn sequential_maps_grow_lighter_and_the_diverging_one_is_lightest_in_the_middle() {
-        let light = |map: ColorMap, i: u32| luminance(map.color(f64::from(i) / 20.0));
-        for map in [ColorMap::Viridis, ColorMap::Magma, ColorMap::Inferno, ColorMap::Cividis, ColorMap::Gray]
-        {
-            assert!((0..20).all(|i| light(map, i) < light(map, i + 1)), "{map:?}");
-        }
-        let diverging = ColorMap::Coolwarm;
-        assert!((0..10).all(|i| light(diverging, i) < light(diverging, i + 1)));
-        assert!((10..20).all(|i| light(diverging, i) > light(diverging, i + 1)));
-    }
-}

@@ -147,39 +147,3 @@ pub(crate) fn encode_png(
     writer.finish()?;
     Ok(file)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_png_reads_back_unchanged() {
-        let mut image = RgbaImage::new(3, 2, [10, 20, 30, 255]);
-        image.pixels_mut()[4] = [1, 2, 3, 4];
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("x.png");
-        image.write_png(&path).unwrap();
-        assert_eq!(RgbaImage::from_png(&std::fs::read(&path).unwrap()).unwrap(), image);
-        let gray = encode_png(2, 1, png::ColorType::Grayscale, &[7, 200]).unwrap();
-        assert_eq!(RgbaImage::from_png(&gray).unwrap().pixels(), [[7, 7, 7, 255], [200, 200, 200, 255]]);
-        assert!(RgbaImage::from_png(b"not a picture").is_err());
-    }
-
-    #[test]
-    fn images_of_different_height_stand_side_by_side() {
-        let (mut a, b) = (RgbaImage::new(1, 2, [1; 4]), RgbaImage::new(2, 1, [2; 4]));
-        a.pixels_mut()[1] = [3; 4];
-        let both = a.beside(&b);
-        assert_eq!((both.width(), both.height()), (3, 2));
-        assert_eq!(both.pixels(), [[1; 4], [2; 4], [2; 4], [3; 4], [2; 4], [2; 4]]);
-    }
-
-    #[test]
-    fn zooming_repeats_columns_and_rows() {
-        let mut image = RgbaImage::new(2, 1, [1, 1, 1, 255]);
-        image.pixels_mut()[1] = [2, 2, 2, 255];
-        let line = [1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2];
-        assert_eq!(image.rgb_bytes(2), [line, line].concat());
-        assert_eq!(RgbaImage::new(1, 1, [100, 0, 255, 51]).rgb_bytes(1), [224, 204, 255]);
-    }
-}

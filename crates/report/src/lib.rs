@@ -17,8 +17,6 @@ pub mod page;
 pub mod record;
 pub mod render;
 mod table;
-#[cfg(test)]
-mod tests;
 pub mod viewer;
 
 pub use error::ReportError;

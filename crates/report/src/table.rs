@@ -114,24 +114,3 @@ impl Table {
         table.trim_fmt()
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn columns_are_aligned_and_numbers_have_digits_to_suit_their_size() {
-        let row =
-            |name: &str, score: f64, seconds: Option<f64>| vec![name.into(), score.into(), seconds.into()];
-        let rows = vec![
-            row("long name", 1.0, Some(0.009_234)),
-            row("b", 0.98765, Some(1234.56)),
-            row("c", -0.5, None),
-        ];
-        let table = Table::new("", ["method", "NN", "seconds"], rows);
-        let expected = "method         NN   seconds\nlong name   1.000  0.009234\nb           0.988      1235\nc          -0.500         -";
-        assert_eq!(table.to_text(), expected);
-        let back: Table = serde_json::from_str(&serde_json::to_string(&table).unwrap()).unwrap();
-        assert_eq!(back, table);
-    }
-}

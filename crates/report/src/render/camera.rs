@@ -163,26 +163,3 @@ fn principal_axes(mesh: &TriMesh) -> [Vector3<f64>; 2] {
     };
     [signed(0), signed(1)]
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn upright_views_follow_azimuth_and_elevation() {
-        let front = upright(0.0, 0.0, Vector3::z());
-        assert!((front - rows(Vector3::x(), Vector3::z())).norm() < 1e-15);
-        assert!((front * -Vector3::y() - Vector3::z()).norm() < 1e-15, "the viewer stands at -y");
-        // A quarter turn counter-clockwise from -y leads to +x.
-        let side = upright(90.0, 0.0, Vector3::z());
-        assert!((side * Vector3::x() - Vector3::z()).norm() < 1e-12);
-        // From straight above, z points at the viewer.
-        let above = upright(0.0, 90.0, Vector3::z() * 7.0);
-        assert!((above * Vector3::z() - Vector3::z()).norm() < 1e-12);
-        for up in [Vector3::x(), Vector3::y(), Vector3::zeros(), Vector3::repeat(f64::NAN)] {
-            let axes = upright(33.0, 21.0, up);
-            assert!((axes * axes.transpose() - Matrix3::identity()).norm() < 1e-12);
-            assert!((axes.determinant() - 1.0).abs() < 1e-12, "never mirrored");
-        }
-    }
-}

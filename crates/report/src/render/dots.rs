@@ -16,20 +16,3 @@ pub fn dots(points: &[Point3<f64>], radius: f64) -> TriMesh {
         faces: (0..points.len()).flat_map(faces).collect(),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn dots_are_outward_oriented_octahedra_around_their_points() {
-        let points = [Point3::new(1.0, 2.0, 3.0), Point3::origin()];
-        let mesh = dots(&points, 0.5);
-        assert_eq!((mesh.n_vertices(), mesh.n_faces()), (12, 16));
-        for face in 0..16 {
-            let (corners, point) = (mesh.triangle(face), points[face / 8]);
-            assert!(corners.iter().all(|p| ((p - point).norm() - 0.5).abs() < 1e-15));
-            assert!(mesh.area_vector(face).dot(&(corners[0] - point)) > 0.0, "outward");
-        }
-    }
-}

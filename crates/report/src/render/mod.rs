@@ -24,6 +24,3 @@ pub use options::{Background, RenderOptions};
 pub use text::{Label, Title, collage};
 
 pub use crate::color::value_range;
-
-#[cfg(test)]
-mod tests;

@@ -63,21 +63,3 @@ fn packed(id: &str, text: &str) -> String {
 fn island(id: &str, bytes: &[u8]) -> String {
     format!("<script type=\"text/plain\" id=\"{id}\">{}</script>\n", STANDARD.encode(bytes))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_scene_runs_its_own_scripts_only_and_names_cannot_leave_their_place() {
-        let geometry =
-            Geometry { positions: vec![[0.0, 0.5, 1.0]; 3], faces: vec![[0, 1, 2]], ..Geometry::default() };
-        let page = scene_page(&geometry.with_values("</script>", &[1.0, 2.0, 3.0]), "<b>cat");
-        assert!(page.contains("&lt;b&gt;cat") && !page.contains("<b>cat"));
-        assert_eq!((page.matches("'sha256-").count(), page.matches("<script>").count()), (4, 1));
-        assert_eq!(page.matches("</script>").count(), 5);
-        assert!(!page.contains("http:") && !page.contains("https:") && !page.contains("unsafe-eval"));
-        assert!((600_000..900_000).contains(&page.len()), "{} bytes", page.len());
-        assert!(page.replace(scene_scripts(), "").len() < 5_000);
-    }
-}

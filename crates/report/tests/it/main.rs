@@ -1,16 +1,30 @@
-//! What the tests share: small invented figures and meshes.
+//! Laws of figures, pages and pictures, and the small invented figures and meshes that they share.
 
-pub(crate) mod meshes;
+// Helper functions are test code too, which clippy cannot see.
+#![allow(clippy::unwrap_used)]
 
-use crate::record::{Axis, Figure, FigurePanels, Mark, Plot, PlotPoint, Series, SeriesKind, Tile};
-use crate::viewer::Geometry;
+mod bar;
+mod color;
+mod figure;
+mod image;
+mod labels;
+mod page;
+mod render;
+mod text;
+mod viewer;
 
-pub(crate) fn figure(panels: FigurePanels) -> Figure {
+use canonform_report::RgbaImage;
+use canonform_report::record::{Axis, Figure, FigurePanels, Mark, Plot, PlotPoint, Series, SeriesKind, Tile};
+use canonform_report::viewer::Geometry;
+use mesh::TriMesh;
+use nalgebra::Point3;
+
+fn figure(panels: FigurePanels) -> Figure {
     Figure { part: "part".to_owned(), caption: "What it shows & <why>.".to_owned(), panels }
 }
 
 /// Two curves over a logarithmic vertical axis.
-pub(crate) fn plot(title: &str) -> Plot {
+fn plot(title: &str) -> Plot {
     let series = |name: &str, factor: f64| {
         let points = [10.0, 50.0, 100.0].map(|x| {
             let y = factor * 1e5 / x;
@@ -27,24 +41,39 @@ pub(crate) fn plot(title: &str) -> Plot {
     }
 }
 
-pub(crate) fn tile(caption: &str, is_form: bool) -> Tile {
+fn tile(caption: &str, is_form: bool) -> Tile {
     let surface = Geometry::new(&mesh::shapes::icosphere(1));
     Tile { captions: vec![caption.to_owned()], is_form, surface }
 }
 
 /// Panics unless a text holds all parts.
-pub(crate) fn assert_holds(text: &str, parts: &[&str]) {
+fn assert_holds(text: &str, parts: &[&str]) {
     for part in parts {
         assert!(text.contains(part), "{part} in {text}");
     }
 }
 
 /// Panics unless as many elements of each kind are closed as are open.
-pub(crate) fn assert_closed(markup: &str) {
+fn assert_closed(markup: &str) {
     for name in ["svg", "text", "title", "section", "figure", "table", "tr", "div", "p", "details", "script"]
     {
         let open =
             markup.matches(&format!("<{name}>")).count() + markup.matches(&format!("<{name} ")).count();
         assert_eq!(open, markup.matches(&format!("</{name}>")).count(), "{name}");
     }
+}
+
+/// The pixel in column `x` and row `y`, from the top left.
+fn pixel(image: &RgbaImage, x: u32, y: u32) -> [u8; 4] {
+    image.pixels()[(y * image.width() + x) as usize]
+}
+
+/// A unit sphere around the z axis, `2 n` by `n` quadrilaterals.
+fn sphere(n: usize) -> TriMesh {
+    let mut sphere = mesh::shapes::cylinder(2 * n, n + 1, 1.0, std::f64::consts::PI);
+    for p in &mut sphere.positions {
+        let (sine, cosine) = p.z.sin_cos();
+        *p = Point3::new(sine * p.x, sine * p.y, -cosine);
+    }
+    sphere
 }
