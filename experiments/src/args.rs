@@ -1,6 +1,6 @@
 //! The command line.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
@@ -57,53 +57,10 @@ pub(crate) struct RunArgs {
     pub(crate) quiet: bool,
 }
 
-impl RunArgs {
-    /// The options that decide the results and where they are, each after a space.
-    pub(crate) fn arguments(&self) -> String {
-        let mut options = self.source.options();
-        let path = |path: &Path| path.display().to_string();
-        options.extend((self.output != Path::new(OUTPUT)).then(|| ("output", path(&self.output))));
-        options.iter().map(|(name, value)| format!(" --{name} {}", quoted(value))).collect()
-    }
-
-    /// The command line that repeats the run.
-    pub(crate) fn command(&self) -> String {
-        format!("cargo run --release -p experiments -- run {}{}", self.names.join(" "), self.arguments())
-    }
-}
-
-/// A word of a command line, in quotes if a shell would take it apart.
-fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_alphanumeric() || "-_./:,+=@%".contains(c);
-    match !word.is_empty() && word.chars().all(is_plain) {
-        true => word.to_owned(),
-        false => format!("'{}'", word.replace('\'', "'\\''")),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn commands_repeat_what_decides_the_results() {
-        for (line, expected) in [
-            ("all --threads 1 -q", "all"),
-            (
-                "retrieval --families articulated,bodies:6x5,creatures:40x8,parts:56x4 --vertices 1000",
-                "retrieval --families articulated,bodies:6x5,creatures:40x8,parts:56x4 --vertices 1000",
-            ),
-            (
-                "figure3 --dataset my&data's --classes cat,dog --seed 2 -o results/1",
-                r"figure3 --dataset 'my&data'\''s' --classes cat,dog --seed 2 --output results/1",
-            ),
-        ] {
-            let line = format!("experiments run {line}");
-            let ExperimentCommand::Run(args) = ExperimentArguments::parse_from(line.split(' ')).command
-            else {
-                panic!("{line}")
-            };
-            assert!(args.command().ends_with(&format!("-- run {expected}")), "{}", args.command());
-        }
-    }
+/// The command line of this run.
+pub(crate) fn command() -> String {
+    let words: Vec<String> =
+        std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
+    let words = shlex::try_join(words.iter().map(String::as_str)).unwrap_or_default();
+    format!("cargo run --release -p experiments -- {words}")
 }

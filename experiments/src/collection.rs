@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use crate::families::Families;
 
 /// Name of the built-in dataset in records.
-pub(crate) const BUILT_IN: &str = "built-in articulated families";
+const BUILT_IN: &str = "built-in articulated families";
 
 /// The classes of the paper's Figure 4.
 pub(crate) const PAPER_CLASSES: [&str; 3] = ["cat", "centaur", "david"];
@@ -33,8 +33,6 @@ const TOSCA_CLASSES: [&str; 12] = [
 const MAPPED_CLASSES: [&str; 3] = ["cat", "david", "gorilla"];
 const FULL_RESOLUTION: usize = 20_000;
 
-const VERTICES: usize = 3400;
-
 /// Where the shapes come from, on the command line.
 #[derive(Debug, Args)]
 pub(crate) struct ShapeSource {
@@ -52,39 +50,17 @@ pub(crate) struct ShapeSource {
     #[arg(
         long,
         value_delimiter = ',',
-        default_values_t = [Families::Articulated],
+        default_value = "articulated",
         value_name = "NAME,...",
         conflicts_with = "dataset"
     )]
     families: Vec<Families>,
     /// Vertices of the built-in shapes, 1,000 to 1,000,000
-    #[arg(long, default_value_t = VERTICES, value_name = "P", conflicts_with = "dataset")]
+    #[arg(long, default_value_t = 3400, value_name = "P", conflicts_with = "dataset")]
     vertices: usize,
     /// Seed of all random numbers
     #[arg(long, default_value_t = 0, value_name = "S")]
     pub(crate) seed: u64,
-}
-
-impl ShapeSource {
-    /// The built-in families, as on the command line.
-    fn families(&self) -> String {
-        self.families.iter().map(ToString::to_string).collect::<Vec<_>>().join(",")
-    }
-
-    /// The options that are not the default, with their values.
-    pub(crate) fn options(&self) -> Vec<(&'static str, String)> {
-        let is_default = self.families == [Families::Articulated];
-        [
-            ("dataset", self.dataset.as_ref().map(|path| path.display().to_string())),
-            ("classes", Some(self.classes.join(","))),
-            ("families", Some(self.families()).filter(|_| !is_default)),
-            ("vertices", Some(self.vertices.to_string()).filter(|_| self.vertices != VERTICES)),
-            ("seed", Some(self.seed.to_string()).filter(|_| self.seed != 0)),
-        ]
-        .into_iter()
-        .filter_map(|(name, value)| Some((name, value.filter(|value| !value.is_empty())?)))
-        .collect()
-    }
 }
 
 /// Labelled surfaces, sorted by class.
@@ -120,10 +96,10 @@ impl SurfaceCollection {
                     (shape.name, shape.label, surface)
                 };
                 let dataset = match args.families[..] {
-                    [Families::Articulated] => BUILT_IN.to_owned(),
-                    _ => format!("built-in {}", args.families()),
+                    [Families::Articulated] => BUILT_IN,
+                    _ => "built-in families",
                 };
-                (dataset, shapes.into_par_iter().map(shape).collect::<Vec<_>>())
+                (dataset.to_owned(), shapes.into_par_iter().map(shape).collect::<Vec<_>>())
             }
             Some(folder) => {
                 let mut files = list_shapes(folder, None)?;

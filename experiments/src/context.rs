@@ -10,7 +10,7 @@ use linalg::LandmarkDistances;
 use report::Record;
 use report::record::{Plot, RunProvenance, Series};
 
-use crate::args::RunArgs;
+use crate::args::command;
 use crate::collection::{Setting, SurfaceCollection};
 use crate::config::{Config, Options, Printed};
 use crate::machine;
@@ -29,7 +29,6 @@ pub(crate) struct Context<'a> {
     /// A few of its shapes, with values that several experiments share, such as the distances of all pairs of vertices.
     pub(crate) specimens: &'a [Specimen<'a>],
     pub(crate) seed: u64,
-    pub(crate) args: &'a RunArgs,
     pub(crate) observer: &'a dyn Observer,
     pub(crate) start: Instant,
 }
@@ -78,8 +77,7 @@ impl Context<'_> {
             commit: env!("CANONFORM_COMMIT").to_owned(),
             date: machine::now(),
             machine: machine::described(),
-            command: self.args.command(),
-            arguments: self.args.arguments(),
+            command: command(),
             dataset: collection.dataset.clone(),
             classes: collection.classes.clone(),
             seed: self.seed,

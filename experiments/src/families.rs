@@ -1,6 +1,5 @@
 //! The choice of built-in families on the command line.
 
-use std::fmt;
 use std::str::FromStr;
 
 use datasets::{
@@ -82,17 +81,6 @@ impl FromStr for Families {
              shapes each, or `parts:56x4` for 4 copies each of 56 mechanical parts; separate several by commas"
                 .to_owned()
         })
-    }
-}
-
-impl fmt::Display for Families {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Articulated => f.write_str("articulated"),
-            Self::Bodies(bodies, poses) => write!(f, "bodies:{bodies}x{poses}"),
-            Self::Creatures(families, poses) => write!(f, "creatures:{families}x{poses}"),
-            Self::Parts(parts, copies) => write!(f, "parts:{parts}x{copies}"),
-        }
     }
 }
 

@@ -73,7 +73,6 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
             collection: &collection,
             specimens: &specimens,
             seed: args.source.seed,
-            args,
             observer: &bars,
             start: Instant::now(),
         };

@@ -46,8 +46,6 @@ pub struct RunProvenance {
     pub machine: String,
     /// The command line that repeats the run.
     pub command: String,
-    /// The options of that command line, each after a space, with which other experiments run on the same shapes.
-    pub arguments: String,
     /// The source of the shapes: a folder, or the name of a built-in dataset.
     pub dataset: String,
     /// The classes in use, in the order of the command line.

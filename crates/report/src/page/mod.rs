@@ -75,7 +75,7 @@ pub fn write_report(
         );
     }
     let path = folder.join(FILE);
-    let page = page(&(paragraphs(lead) + &headline(&made)), &made, &main, &closing(&made, &open));
+    let page = page(&(paragraphs(lead) + &headline(&made)), &made, &main, &closing(&open));
     write_bytes(&path, page.as_bytes())?;
     Ok(path)
 }
@@ -115,21 +115,18 @@ fn headline(sections: &[ShownSection<'_>]) -> String {
     html
 }
 
-/// The last line of the page: which experiments have not run, and the command that runs them on the shapes of the others,
-/// into this folder; empty if all have.
-fn closing(made: &[ShownSection<'_>], open: &[&Section]) -> String {
+/// The last line of the page: which experiments have not run, and the command that runs them; empty if all have.
+fn closing(open: &[&Section]) -> String {
     if open.is_empty() {
         return String::new();
     }
     let titles: Vec<String> = open.iter().map(|section| escape(section.short())).collect();
     let names: Vec<&str> = open.iter().map(|section| section.name.as_str()).collect();
-    // Records of several runs: the last one decides.
-    let last = made.iter().map(|(_, record)| &record.provenance).max_by_key(|made| &made.date);
-    let arguments = last.map_or("", |made| &made.arguments);
     format!(
-        "<footer><p class=\"pale\">Not run: {}. To run them: <code>{}</code></p></footer>\n",
+        "<footer><p class=\"pale\">Not run: {}. To run them, with the options of the others: \
+         <code>cargo run --release -p experiments -- run {}</code></p></footer>\n",
         titles.join(", "),
-        escape(&format!("cargo run --release -p experiments -- run {}{arguments}", names.join(" ")))
+        escape(&names.join(" "))
     )
 }
 
