@@ -47,7 +47,7 @@ pub(crate) struct Options {
     /// Decimal logarithms of alpha.
     pub(crate) exponents: Vec<f64>,
     pub(crate) printed: Printed,
-    /// Shapes of each class that are searched for.
+    /// Shapes of each class that are searched for; of `robustness`, of all classes together.
     pub(crate) queries: usize,
     /// Nearest neighbors that vote.
     pub(crate) voters: usize,

@@ -89,13 +89,12 @@ impl Context<'_> {
 
     /// The numbers that texts may use: what was measured, options, sizes.
     fn known(&self, measured: &MeasuredNumbers) -> MeasuredNumbers {
-        let Self { collection, options, config, .. } = self;
+        let Self { collection, config, .. } = self;
         let n = collection.shapes.len();
         let sizes = [
             ("shapes", n),
             ("others", n.saturating_sub(1)),
             ("classes", collection.classes.len()),
-            ("queried", collection.first_of_each_class(options.queries).len()),
             ("threads", rayon::current_num_threads()),
         ];
         let own = config

@@ -40,13 +40,10 @@ experiments! {
     "figure9" paper::figure9::figure9,
     "retrieval" studies::retrieval::retrieval,
     "forms" studies::forms::forms,
-    "invariance" studies::invariance::invariance,
     "robustness" studies::robustness::robustness,
     "matching" studies::matching::matching,
     "points" studies::points::points,
-    "partial" studies::partial::partial,
     "evidence" studies::evidence::evidence,
-    "scaling" studies::scaling::scaling,
 }
 
 /// Stands for all experiments on the command line.

@@ -9,10 +9,10 @@ use crate::error::DescriptorError;
 /// Radii at which areas of discs are compared, relative to the square root of the area of the whole.
 const RADII: usize = 20;
 
-/// The smallest and the largest radius. `experiments run partial` measures what follows from the choice.
+/// The smallest and the largest radius. `experiments run robustness` measures what follows from the choice.
 const RANGE: [f64; 2] = [0.06, 2.2];
 
-/// Shares of the whole that the part may be: half of a shape is found less reliably (`experiments run partial`).
+/// Shares of the whole that the part may be: half of a shape is found less reliably (`experiments run robustness`).
 const SHARES: [f64; 9] = [1.0, 0.93, 0.86, 0.8, 0.74, 0.69, 0.64, 0.57, 0.5];
 
 /// A disc begins to count a point at this share of its radius before its rim, and counts it fully as far behind it. A

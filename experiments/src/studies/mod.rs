@@ -2,10 +2,7 @@
 
 pub(crate) mod evidence;
 pub(crate) mod forms;
-pub(crate) mod invariance;
 pub(crate) mod matching;
-pub(crate) mod partial;
 pub(crate) mod points;
 pub(crate) mod retrieval;
 pub(crate) mod robustness;
-pub(crate) mod scaling;

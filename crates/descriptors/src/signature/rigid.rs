@@ -15,7 +15,7 @@ const DISTANCES: usize = 16;
 const OF_DISTANCES: f64 = 0.25;
 
 /// The factor of the powers of normals: noise of .2 % of the diagonal changes them by .12, and the other values by .02
-/// (`experiments run invariance --families parts:16x1`).
+/// (`experiments run robustness --families parts:16x1`).
 const OF_NORMALS: f64 = 0.1;
 
 /// The largest degree of the harmonics of normals. The first is zero for closed surfaces.
