@@ -66,9 +66,9 @@ pub(crate) fn methods(args: &MethodsArgs, common: &Common) -> Result<ExitCode> {
     report(common, &json, |json| {
         let kind = json.methods.iter().find_map(|m| m.facts.as_ref()?.stress.as_ref());
         let kind = kind.map_or_else(String::new, |s| format!(", {:?}", s.kind).to_lowercase());
-        table(&json.methods, common)
+        table(&json.methods, json.best, common)
             + &format!(
-                "\n* lowest of its column. {} vertices, {} dimensions; the normalized stress is the relative error of the {} \
+                "\n* least stress. {} vertices, {} dimensions; the normalized stress is the relative error of the {} \
                  distances{kind}; seconds from the repaired mesh to the embedding",
                 json.n_embedded, json.dim, json.geodesic
             )
@@ -138,48 +138,35 @@ fn variants(shared: &FormOptions) -> Vec<(&'static str, FormOptions)> {
     all
 }
 
-/// The columns of a method; the lowest value is marked where there is a place for a star.
-const COLUMNS: [&str; 6] =
-    ["normalized stress  ", "seconds  ", "memory  ", "samples", "stress  ", "negative mass"];
+/// The columns of a method, of which `--details` adds the last three.
+const COLUMNS: [&str; 6] = ["normalized stress  ", "seconds", "memory", "samples", "stress", "negative mass"];
 
-/// The values of a method as text, and those of which the lowest is marked.
-fn cells(facts: &MethodFacts) -> [(String, Option<f64>); 6] {
-    let (stress, seconds, bytes) = (facts.stress.as_ref(), facts.seconds, facts.peak_bytes);
+/// The values of a method as text. The least stress is marked with a star.
+fn cells(facts: &MethodFacts, is_best: bool) -> [String; 6] {
+    let normalized = facts.stress.as_ref().map(|s| estimated(s.normalized, s.normalized_interval, 4));
     [
-        (
-            stress
-                .map_or_else(|| "no unit".to_owned(), |s| estimated(s.normalized, s.normalized_interval, 4)),
-            stress.map(|s| s.normalized),
-        ),
-        (report::numbers::seconds(seconds), Some(seconds)),
-        (report::numbers::bytes(bytes), Some(bytes as f64)),
-        (facts.n_samples.to_string(), None),
-        (stress.map_or_else(String::new, |s| format!("{:.4}", s.value)), stress.map(|s| s.value)),
-        (format!("{:.4}", facts.negative_mass), None),
+        normalized.unwrap_or_else(|| "no unit".to_owned()) + if is_best { " *" } else { "  " },
+        report::numbers::seconds(facts.seconds),
+        report::numbers::bytes(facts.peak_bytes),
+        facts.n_samples.to_string(),
+        facts.stress.as_ref().map_or_else(String::new, |s| format!("{:.4}", s.value)),
+        format!("{:.4}", facts.negative_mass),
     ]
 }
 
 /// One row per method, and the errors of those that failed.
-fn table(methods: &[MethodJson], common: &Common) -> String {
+fn table(methods: &[MethodJson], best: Option<usize>, common: &Common) -> String {
     let columns = &COLUMNS[..if common.details { COLUMNS.len() } else { 3 }];
-    let rows: Vec<_> = methods.iter().map(|method| method.facts.as_ref().map(cells)).collect();
-    let least =
-        |column: usize| rows.iter().flatten().filter_map(|row| row[column].1).fold(f64::INFINITY, f64::min);
     let mut table = table_of(["method", "options"].iter().chain(columns));
     let mut failures = String::new();
-    for (MethodJson { method, options, error, .. }, row) in methods.iter().zip(&rows) {
-        let cell = |(i, (text, value)): (usize, &(String, Option<f64>))| match COLUMNS[i].ends_with(' ') {
-            true if *value == Some(least(i)) => format!("{text} *"),
-            true => format!("{text}  "),
-            false => text.clone(),
-        };
-        let mut values = vec![(*method).to_owned(), (*options).to_owned()];
-        match row {
-            Some(row) => values.extend(row.iter().enumerate().take(columns.len()).map(cell)),
-            None => values.push("failed  ".to_owned()),
-        }
-        values.resize(2 + columns.len(), String::new());
-        table.add_row(values);
+    for (i, MethodJson { method, options, facts, error }) in methods.iter().enumerate() {
+        let values = facts.as_ref().map_or_else(
+            || vec!["failed  ".to_owned()],
+            |facts| cells(facts, best == Some(i))[..columns.len()].to_vec(),
+        );
+        let mut row = [vec![(*method).to_owned(), (*options).to_owned()], values].concat();
+        row.resize(2 + columns.len(), String::new());
+        table.add_row(row);
         failures.extend(error.as_ref().map(|error| format!("\n{method} {options} failed: {error}")));
     }
     for column in table.column_iter_mut().skip(2) {
