@@ -1,8 +1,8 @@
 //! What surfaces are computed with: Laplacians, their eigenfunctions, and nearest points. Rows are vertices of the input.
 
 use canonform::descriptors::LaplaceSpectrum;
-use canonform::surface::laplacian::{Element, Laplacian};
-use canonform::surface::{Triangle, VertexId};
+use canonform::surface::VertexId;
+use canonform::surface::laplacian::Laplacian;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 use rayon::prelude::*;
@@ -31,22 +31,13 @@ type Nearest<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>, Bound
 /// The stiffness matrix, in which entries of the same place add up, and the area around each vertex in squared mesh units.
 /// Vertices that the repair dropped have neither; of those that it merged, the first stands for all.
 #[pyfunction]
-pub(crate) fn laplacian<'py>(
-    py: Python<'py>,
-    surface: &Surface,
-    intrinsic: bool,
-) -> PyResult<Operators<'py>> {
+pub(crate) fn laplacian<'py>(py: Python<'py>, surface: &Surface) -> PyResult<Operators<'py>> {
     let inner = &surface.inner;
     let (entries, masses) = run(py, |_| {
-        Ok(match intrinsic {
-            true => {
-                let laplacian = Laplacian::new(inner.intrinsic());
-                let sq_unit = laplacian.metric.unit.powi(2);
-                let masses: Vec<f64> = laplacian.masses().iter().map(|mass| mass * sq_unit).collect();
-                (laplacian.stiffness_entries().collect::<Vec<_>>(), masses)
-            }
-            false => cotangents(surface),
-        })
+        let laplacian = Laplacian::new(inner.intrinsic());
+        let sq_unit = laplacian.metric.unit.powi(2);
+        let masses: Vec<f64> = laplacian.masses().iter().map(|mass| mass * sq_unit).collect();
+        Ok((laplacian.stiffness_entries().collect::<Vec<_>>(), masses))
     })?;
     let input = |v: usize| inner.input_vertex(VertexId::from(v)).index();
     let mut of_input = vec![0.0; inner.n_input_vertices()];
@@ -62,27 +53,6 @@ pub(crate) fn laplacian<'py>(
         }
     }
     Ok((rows.into_pyarray(py), columns.into_pyarray(py), values.into_pyarray(py), of_input.into_pyarray(py)))
-}
-
-/// Entries of the textbook stiffness matrix, and areas around vertices, of the repaired faces as they are.
-fn cotangents(surface: &Surface) -> (Vec<(usize, usize, f64)>, Vec<f64>) {
-    let mesh = surface.inner.mesh();
-    let mut masses = vec![0.0; mesh.n_vertices()];
-    let mut entries = Vec::with_capacity(9 * mesh.n_faces());
-    for (f, face) in mesh.faces.iter().enumerate() {
-        let [a, b, c] = mesh.triangle(f);
-        let [ab, bc, ca] = [(b - a).norm(), (c - b).norm(), (a - c).norm()];
-        let element =
-            Element { vertices: face.map(|v| v.0), triangle: Triangle::from_sides([ab, ca, bc]), share: 1.0 };
-        for v in face {
-            masses[v.index()] += element.triangle.area() / 3.0;
-        }
-        for (ends, weight) in element.weights() {
-            let [i, j] = ends.map(|v| v as usize);
-            entries.extend([(i, i, weight), (j, j, weight), (i, j, -weight)]);
-        }
-    }
-    (entries, masses)
 }
 
 /// The smallest eigenvalues of the Laplacian, in one over squared mesh units, and its eigenfunctions as columns, orthonormal

@@ -30,33 +30,29 @@ def ball(n: int = 3000) -> Surface:
     return Surface(points, faces)
 
 
-@pytest.mark.parametrize("kind", ["intrinsic", "cotangent"])
-def test_matrices_are_those_of_linear_elements(cat: Shape, kind: str) -> None:
+def test_matrices_are_those_of_linear_elements(cat: Shape) -> None:
     surface = cat.surface()
-    stiffness, mass = surface.laplacian(kind=kind), surface.mass(kind=kind)
+    stiffness, mass = surface.laplacian(), surface.mass()
     assert stiffness.shape == mass.shape == (1000, 1000) and stiffness.nnz < 10_000
     assert abs(stiffness - stiffness.T).max() < 1e-12
     assert np.abs(stiffness @ np.ones(1000)).max() < 1e-9 * stiffness.diagonal().max()
     assert mass.diagonal().sum() == pytest.approx(surface.area)
-    with pytest.raises(OptionError, match="cotangent"):
-        surface.laplacian(kind="graph")
 
 
 def test_no_intrinsic_weight_is_negative() -> None:
     vertices, faces = grid(9)
     surface = Surface(vertices @ np.array([[1, 0, 0], [2.7, 1, 0], [0, 0, 1.0]]), faces)
-    negative = {
-        kind: max(0.0, -(matrix := -surface.laplacian(kind=kind)).tocoo().data[matrix.tocoo().row != matrix.tocoo().col].min())
-        for kind in ("intrinsic", "cotangent")
-    }
-    assert negative["intrinsic"] < 1e-12 < negative["cotangent"]
+    stiffness = {"intrinsic": surface.laplacian(), "faces": -surface.divergence() @ surface.gradient()}
+    entries = {name: (-matrix).tocoo() for name, matrix in stiffness.items()}
+    negative = {name: max(0.0, -entry.data[entry.row != entry.col].min()) for name, entry in entries.items()}
+    assert negative["intrinsic"] < 1e-12 < negative["faces"]
 
 
 def test_a_flat_function_has_the_energy_of_its_slope() -> None:
     surface = Surface(*grid(12, 3.0))
     x = surface.vertices @ [3.0, -4.0, 0.0]
-    for kind in ("intrinsic", "cotangent"):
-        assert x @ (surface.laplacian(kind=kind) @ x) == pytest.approx(25 * surface.area)
+    for stiffness in (surface.laplacian(), -surface.divergence() @ surface.gradient()):
+        assert x @ (stiffness @ x) == pytest.approx(25 * surface.area)
     np.testing.assert_allclose(surface.gradient(x), np.tile([3.0, -4.0, 0.0], (surface.n_faces, 1)), atol=1e-9)
 
 
@@ -222,8 +218,10 @@ def test_gradient_and_divergence_are_matrices(cat: Shape) -> None:
     values = np.sin(surface.vertices[:, 0])
     np.testing.assert_allclose((gradient @ values).reshape(-1, 3), surface.gradient(values), atol=1e-12)
     np.testing.assert_allclose(divergence @ (gradient @ values), surface.divergence(surface.gradient(values)))
-    stiffness = surface.laplacian(kind="cotangent")
-    assert abs(divergence @ gradient + stiffness).max() < 1e-9 * abs(stiffness).max()
+    # Faces with angles of at most 90 degrees around each edge are their own intrinsic Delaunay triangulation.
+    flat = Surface(*grid(9))
+    stiffness = flat.laplacian()
+    assert abs(flat.divergence() @ flat.gradient() + stiffness).max() < 1e-9 * abs(stiffness).max()
     with pytest.raises(OptionError, match="vectors must be an array of numbers of shape"):
         surface.divergence(values)
 

@@ -94,8 +94,6 @@ cat.canonical_form(stress="none")  # wrong
 cat.canonical_form(rank=30)  # wrong
 cat.signature("shape-dna")
 cat.signature("shapedna")  # wrong
-cat.laplacian(kind="cotangents")  # wrong
-cat.mass(kind="lumped")  # wrong
 canonform.match(cat, cat, geodesic="fmm")  # wrong
 canonform.match(cat, cat).best.transfer([1.0], to="c")  # wrong
 index = canonform.Index.build("meshes", "i.canonform", method="landmark")
@@ -143,7 +141,6 @@ def test_literals_are_what_rust_reports(tmp_path: Path) -> None:
     square = canonform.Surface(*grid())
     wrong: Any = "?"
     for literal, call in [
-        (_settings.LaplacianKind, lambda: square.laplacian(kind=wrong)),
         (_settings.Ranking, lambda: index.search(square, rank=wrong)),
         (_settings.IndexDistance, lambda: index.distances(kind=wrong)),
         (_settings.RelationKind, lambda: index.duplicates(kinds=[wrong])),

@@ -29,7 +29,6 @@ Bandwidth: TypeAlias = Literal["mean", "median", "max"] | float
 StressChoice: TypeAlias = Literal["auto", "exact", "estimate", "skip"]
 Components: TypeAlias = Literal["largest", "bridge", "error"]
 Weld: TypeAlias = Literal["seams", "all", "none"] | float
-LaplacianKind: TypeAlias = Literal["intrinsic", "cotangent"]
 SignatureKind: TypeAlias = Literal[
     "fused", "form-spectrum", "geodesic-spectrum", "shape-dna", "heat-kernel", "wave-kernel", "rigid"
 ]
