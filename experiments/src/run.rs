@@ -44,7 +44,11 @@ experiments! {
     "matching" studies::matching::matching,
     "points" studies::points::points,
     "evidence" studies::evidence::evidence,
+    "scaling" studies::scaling::scaling,
 }
+
+/// Names of earlier experiments, and the one that includes them.
+const INCLUDED: [(&str, &str); 2] = [("invariance", "robustness"), ("partial", "robustness")];
 
 /// Stands for all experiments on the command line.
 const ALL: &str = "all";
@@ -55,10 +59,15 @@ const LEADS: [&str; 3] = ["figure4", "retrieval", "figure1"];
 /// `experiments run`.
 pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
     let known: Vec<&str> = [ALL].into_iter().chain(EXPERIMENTS.map(|(name, ..)| name)).collect();
-    if let Some(name) = args.names.iter().find(|name| !known.contains(&name.as_str())) {
+    let current = |name: &'_ String| {
+        let earlier = INCLUDED.iter().find(|(earlier, _)| earlier == name);
+        earlier.map_or(name.clone(), |(_, now)| (*now).to_owned())
+    };
+    let names: Vec<String> = args.names.iter().map(current).collect();
+    if let Some(name) = names.iter().find(|name| !known.contains(&name.as_str())) {
         bail!("there is no experiment `{name}`; choose from {}", known.join(", "));
     }
-    let is_wanted = |(name, ..): &Experiment| args.names.iter().any(|wanted| wanted == name || wanted == ALL);
+    let is_wanted = |(name, ..): &Experiment| names.iter().any(|wanted| wanted == name || wanted == ALL);
     let bars = Bars::new(args.quiet);
     let collection = SurfaceCollection::load(&args.source, &bars)?;
     let specimens = specimens(&collection);

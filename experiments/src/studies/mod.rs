@@ -6,3 +6,4 @@ pub(crate) mod matching;
 pub(crate) mod points;
 pub(crate) mod retrieval;
 pub(crate) mod robustness;
+pub(crate) mod scaling;

@@ -175,6 +175,9 @@ pub(crate) struct SearchArgs {
     /// Say how every shape is related to the query, as `compare` does; reads the files of the shapes again
     #[arg(long)]
     pub(crate) explain: bool,
+    /// Accepted for older scripts: every search compares all shapes
+    #[arg(long, hide = true)]
+    pub(crate) exact: bool,
     /// How to order results; `part` and `forms` compare the query with every shape
     #[arg(long, visible_alias = "by", default_value = "plain")]
     pub(crate) rank: SearchRank,

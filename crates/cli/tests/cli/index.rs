@@ -47,7 +47,7 @@ fn a_folder_becomes_an_index_that_finds_its_shapes() {
     let json = one_object(&outcome.out);
     assert_eq!((outcome.code, json["queries"].as_array().unwrap().len()), (2, 2));
     assert_eq!(json["failed"][0]["query"], "none.off");
-    let text = place.done("search all.canonform query.ply --explain").out;
+    let text = place.done("search all.canonform query.ply --explain --exact").out;
     assert!(text.contains("class: ring") && text.contains("9 of 9 shapes measured"), "{text}");
 }
 
