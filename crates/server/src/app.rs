@@ -17,6 +17,7 @@ use crate::duplicates::Duplicates;
 use crate::error::ApiError;
 use crate::measured::Measured;
 use crate::options::ServeOptions;
+use crate::upload::FRAME;
 use crate::work::Work;
 
 /// Size of the cache of meshes, forms and thumbnails, in bytes.
@@ -70,7 +71,7 @@ impl App {
         Ok(Self {
             served: Served::open(index)?,
             work: Work::new(&options),
-            uploads: Arc::new(Semaphore::new(options.max_uploads * options.max_upload)),
+            uploads: Arc::new(Semaphore::new(options.max_uploads * (options.max_upload + FRAME))),
             duplicates: Duplicates::new(options.idle_time),
             // Thumbnails are smaller than meshes.
             measured: Cache::new(CACHE / 4 * 3),

@@ -25,6 +25,7 @@ use crate::app::App;
 use crate::error::{ApiError, ServerError};
 use crate::guard::{HEADERS, refuse_foreign_pages, refuse_other_hosts};
 use crate::options::{STACK, ServeOptions};
+use crate::upload::Patience;
 use crate::{api, page};
 
 /// Pause after a connection could not be accepted, for example because of too many open files.
@@ -169,10 +170,6 @@ impl Server {
     }
 }
 
-/// How long the server waits for the client of a connection: for a request, for its body, and until a response is taken.
-#[derive(Clone, Copy)]
-pub(crate) struct Patience(pub(crate) Duration);
-
 /// Answers all requests of a connection; after a stop, only the one in progress.
 async fn answer(stream: TcpStream, router: Router, patience: Patience, stop: CancellationToken) {
     let mut stream = pin!(TimeoutStream::new(stream));
@@ -196,7 +193,8 @@ async fn answer(stream: TcpStream, router: Router, patience: Patience, stop: Can
     // Broken connections are not errors of the server.
     if served.is_ok() {
         let (mut rest, mut nothing) = (stream.take(REFUSED_BYTES), tokio::io::sink());
-        let draining = tokio::time::timeout(REFUSED_TIME, tokio::io::copy(&mut rest, &mut nothing));
+        let draining = tokio::io::copy(&mut rest, &mut nothing);
+        let draining = tokio::time::timeout(REFUSED_TIME.min(patience.0), draining);
         stop.run_until_cancelled(draining).await;
     }
 }

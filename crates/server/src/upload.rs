@@ -1,6 +1,8 @@
 //! Receives a multipart form with a mesh into memory, within limits of size, time and memory.
 
+use std::future::poll_fn;
 use std::path::PathBuf;
+use std::pin::Pin;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -16,7 +18,7 @@ use crate::error::ApiError;
 use crate::options::ServeOptions;
 
 /// Allowance for boundaries and headers of a form, in bytes.
-const FRAME: usize = 64 << 10;
+pub(crate) const FRAME: usize = 64 << 10;
 
 /// Maximum number of files in a form.
 const MOST_FILES: usize = 16;
@@ -30,6 +32,10 @@ const RATE: f64 = 4000.0;
 /// Seconds after which a client may send an upload again for which there was no memory.
 const RETRY_AFTER: u32 = 2;
 
+/// How long the server waits for the client of a connection: for a request, for its body, and until a response is taken.
+#[derive(Clone, Copy)]
+pub(crate) struct Patience(pub(crate) Duration);
+
 /// Names without folders, and contents.
 pub(crate) type Files = Vec<(PathBuf, Vec<u8>)>;
 
@@ -38,38 +44,56 @@ pub(crate) fn announced(request: &Request) -> u64 {
     request.body().size_hint().lower()
 }
 
-/// Receives a form. A client that sends nothing for as long as the `patience` lasts is too slow; every byte puts that off. The
-/// files count as `memory`, one permit per byte, until the permits returned with them are dropped.
+/// Receives a form. A client that sends nothing for as long as the `patience` lasts is too slow; every byte puts that off. Every
+/// byte is a permit of `memory`, too, until the permits returned with the files are dropped.
 pub(crate) async fn receive(
-    mut request: Request,
-    patience: Duration,
+    request: Request,
+    Patience(patience): Patience,
     memory: &Arc<Semaphore>,
     options: &ServeOptions,
 ) -> Result<(Files, OwnedSemaphorePermit), ApiError> {
-    let too_large = || ApiError::upload_too_large(options.max_upload);
-    let most = options.max_upload + FRAME;
-    if announced(&request) > most as u64 {
-        return Err(too_large());
-    }
-    DefaultBodyLimit::max(most).apply(&mut request);
-    let mut form = Multipart::from_request(request, &()).await.map_err(|_| {
-        ApiError::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, "the request is not a form with a file")
-            .with_remedy(form_remedy())
-    })?;
-    let faulty = |fault: MultipartError| match fault.status() {
-        StatusCode::PAYLOAD_TOO_LARGE => too_large(),
-        _ => ApiError::bad_request(format!("the form cannot be read: {}", fault.body_text()))
-            .with_remedy(form_remedy()),
+    let (announced, most) = (announced(&request), options.max_upload + FRAME);
+    let (head, mut body) = request.into_parts();
+    let check_size = |bytes: usize| match bytes > most {
+        true => Err(ApiError::upload_too_large(options.max_upload)),
+        false => Ok(()),
     };
-    let late = |_| ApiError::upload_too_slow();
     let hold = |bytes: usize| {
         let permit = memory.clone().try_acquire_many_owned(bytes as u32);
         permit.map_err(|_| ApiError::busy(RETRY_AFTER))
     };
+    check_size(announced as usize)?;
+    let (mut received, mut held) = (Vec::new(), hold(0)?);
     let latest = Instant::now() + options.upload_time;
     let mut deadline = latest.min(Instant::now() + patience);
-    let (mut files, mut held) = (Files::new(), hold(0)?);
-    while let Some(mut part) = timeout_at(deadline, form.next_field()).await.map_err(late)?.map_err(faulty)? {
+    loop {
+        let next = poll_fn(|context| Pin::new(&mut body).poll_frame(context));
+        let next = timeout_at(deadline, next).await.map_err(|_| ApiError::upload_too_slow())?;
+        let Some(frame) = next else { break };
+        let frame = frame.map_err(|_| ApiError::bad_request("the request breaks off"))?;
+        let Ok(piece) = frame.into_data() else { continue };
+        check_size(received.len() + piece.len())?;
+        held.merge(hold(piece.len())?);
+        received.extend_from_slice(&piece);
+        deadline += Duration::from_secs_f64(piece.len() as f64 / RATE);
+        deadline = deadline.min(Instant::now() + patience).min(latest);
+    }
+    Ok((files(Request::from_parts(head, received.into())).await?, held))
+}
+
+/// The files of a form that has been received.
+async fn files(mut request: Request) -> Result<Files, ApiError> {
+    DefaultBodyLimit::disable().apply(&mut request);
+    let mut form = Multipart::from_request(request, &()).await.map_err(|_| {
+        ApiError::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, "the request is not a form with a file")
+            .with_remedy(form_remedy())
+    })?;
+    let faulty = |fault: MultipartError| {
+        ApiError::bad_request(format!("the form cannot be read: {}", fault.body_text()))
+            .with_remedy(form_remedy())
+    };
+    let mut files = Files::new();
+    while let Some(part) = form.next_field().await.map_err(faulty)? {
         if files.len() == MOST_FILES {
             return Err(ApiError::bad_request(format!("the form has more than {MOST_FILES} files")));
         }
@@ -77,19 +101,13 @@ pub(crate) async fn receive(
             return Err(ApiError::bad_request("a field of the form is no file")
                 .with_remedy("give parameters in the address, such as /api/search?k=5"));
         };
-        let mut content = Vec::new();
-        while let Some(piece) = timeout_at(deadline, part.chunk()).await.map_err(late)?.map_err(faulty)? {
-            held.merge(hold(piece.len())?);
-            content.extend_from_slice(&piece);
-            deadline += Duration::from_secs_f64(piece.len() as f64 / RATE);
-            deadline = deadline.min(Instant::now() + patience).min(latest);
-        }
+        let content = part.bytes().await.map_err(faulty)?;
         // Browsers send nothing of this name if no file was chosen.
         if !(name.as_os_str().is_empty() && content.is_empty()) {
-            files.push((name, content));
+            files.push((name, content.into()));
         }
     }
-    Ok((files, held))
+    Ok(files)
 }
 
 fn form_remedy() -> String {

@@ -25,8 +25,7 @@ use crate::collection::Collection;
 use crate::cost;
 use crate::error::ApiError;
 use crate::measured::Measured;
-use crate::serve::Patience;
-use crate::upload::{Files, announced, receive};
+use crate::upload::{Files, Patience, announced, receive};
 
 /// Maximum number of results.
 const MOST_FOUND: usize = 100;
@@ -119,7 +118,7 @@ impl Wanted {
 /// Searches with an upload.
 pub(super) async fn search(
     State(app): State<Arc<App>>,
-    Extension(Patience(patience)): Extension<Patience>,
+    Extension(patience): Extension<Patience>,
     Params(params): Params<SearchParams>,
     request: Request,
 ) -> Result<Response, ApiError> {
