@@ -60,7 +60,7 @@ impl Journal {
         let cannot_read = |source| FileError::read(path, source);
         let open = OpenOptions::new().read(true).append(true).create(is_new).open(path);
         let mut file = open.map_err(cannot_read)?;
-        let refused = |what| Error::Move { path: path.to_owned(), what };
+        let refused = |what: &str| Error::refused(format!("{}: {what}", path.display()));
         file.try_lock().map_err(|_| refused("another program is moving files; wait for its end"))?;
         let mut text = String::new();
         file.read_to_string(&mut text).map_err(cannot_read)?;

@@ -26,9 +26,9 @@ pub use self::report::{MoveReport, NotMoved};
 /// that nothing else is hidden in it. Takes back a mesh of which an interrupted program has moved a part.
 ///
 /// # Errors
-/// [`Error::Move`], [`Error::File`].
+/// [`Error::Refused`], [`Error::File`].
 pub fn check_place(folder: &Path, place: &Path) -> Result<(), Error> {
-    let refused = |what| Err(Error::Move { path: place.to_owned(), what });
+    let refused = |what: &str| Err(Error::refused(format!("{}: {what}", place.display())));
     let root = folder.canonicalize().map_err(|source| FileError::read(folder, source))?;
     if root.to_str().is_none() {
         return refused("the name of a folder around the meshes is not UTF-8; rename it");
@@ -50,7 +50,7 @@ pub fn check_place(folder: &Path, place: &Path) -> Result<(), Error> {
 /// overwritten; links and what they lead to stay, and files in reference folders or on another file system. Collections around `place` leave it out from then on.
 ///
 /// # Errors
-/// Those of [`check_place`]; [`Error::Move`] if `place` is in use; [`Error::File`]. What was moved before stays in the journal.
+/// Those of [`check_place`]; [`Error::Refused`] if `place` is in use; [`Error::File`]. What was moved before stays in the journal.
 pub fn move_duplicates<P: AsRef<Path>>(
     report: &DuplicateReport,
     folders: &[P],
@@ -101,7 +101,7 @@ pub fn move_duplicates<P: AsRef<Path>>(
 /// journal.
 ///
 /// # Errors
-/// [`Error::Move`] if the journal is damaged or in use; [`Error::File`].
+/// [`Error::Refused`] if the journal is damaged or in use; [`Error::File`].
 pub fn undo_moves(journal: &Path) -> Result<MoveReport, Error> {
     let mut journal = Journal::open(journal, false)?;
     let mut moves = MoveReport::default();
