@@ -106,7 +106,7 @@ impl Relation {
     fn by_distance_in_words(&self) -> String {
         let (shape, distance) = (ShapeMetric::SAME_SHAPE.at, self.evidence.distance.combined);
         let above = match self.evidence.classes {
-            Some(classes) => format!("another class above {:.3}", classes.gap()[1]),
+            Some(classes) => format!("probably another class above {:.3}", classes.at),
             None => format!("not alike above {:.3}", ShapeMetric::SAME_CLASS.gap()[1]),
         };
         format!("combined distance {distance:.3} (probably one shape below {shape:.3}, {above})")

@@ -17,6 +17,7 @@
 //! | `matches` | how a changed mesh is related to the original |
 //! | `keepers` | which of several copies is kept |
 //! | `nearest` | what a search finds |
+//! | `probabilities` | what an index states of the hits of a search |
 //! | `map_uses` | known pairs, points inside faces, and what maps carry |
 //! | `part_maps` | dense maps between a part and a whole |
 //! | `samples` | how many samples are enough, and the interval of the stress after that choice |
@@ -48,6 +49,7 @@ mod one_of_each;
 mod packaging;
 mod pages;
 mod part_maps;
+mod probabilities;
 mod rested;
 mod samples;
 mod scale;

@@ -1,43 +1,56 @@
 //! How well the classes of an index and the distances of its shapes agree.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::HashMap;
 use std::path::PathBuf;
 
 use base::{ContentHash, Observer};
-use descriptors::{Boundary, PreparedShape, Sample, ShapeMetric, ShapePair};
+use descriptors::{Boundary, PreparedShape, Sample, ShapeMetric};
 use index::{Entry, Index, IndexError, IndexWriter, Shape};
-use rayon::prelude::*;
+use retrieval::Neighbor;
 use serde::{Deserialize, Serialize};
 
 use super::record::options_of;
+use super::rerank::rerank;
 use crate::error::Error;
 use crate::form::DescribeOptions;
 
-/// The least number of pairs of one class from which a boundary is fitted, and the most of either kind whose forms are aligned.
+/// The least number of pairs of one class from which a boundary is fitted.
 const LEAST: usize = 30;
-const MOST: usize = 100;
 
-/// Shapes whose pairs are drawn, those whose hashed names come first.
+/// Shapes among which hits are found, those whose hashed names come first, and how many of them are queries.
 const SHAPES: usize = 512;
+const QUERIES: usize = 64;
 
-/// Parts of the pairs that are held out one by one.
+/// Hits of each query, as many as a search lists by default.
+const HITS: usize = 10;
+
+/// Two forms that coincide say no more than two that nearly do: their distance, in units of two poses.
+const LEAST_DISTANCE: f64 = 1e-3;
+
+/// Parts of the queries that are held out one by one.
 const FOLDS: usize = 5;
 
 /// The note of an index that states it.
 const NOTE: &str = "agreement";
 
-/// Where pairs of one class end in a collection, and how well that separates them from others.
+/// Where hits of the class of a query end in a collection, and how well that separates them from others.
+///
+/// Shapes of the collection are the queries. A query is missing from its class, so hits of that class weigh more, as much as if it
+/// were there: probabilities are to be true of the hits that searches list for other shapes of these classes. Pairs drawn at random
+/// would not do: in an index of ten classes nine of ten pairs are of two, but not nine of ten hits.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Agreement {
-    /// Pairs of one class that were measured.
+    /// Hits of the class of their query.
     pub same_class: usize,
-    /// Pairs of two classes that were measured.
+    /// Hits of other classes. Where all hits are of one class, the nearest shape of another class is one, too.
     pub other_classes: usize,
     /// The combined distance at which both are equally likely.
     pub boundary: f64,
     /// How fast the odds change there.
     pub steepness: f64,
-    /// The share of pairs that are on their side of the boundary that the others have, by cross-validation; both kinds being
+    /// Probabilities of one class infinitely far away and at distance 0.
+    pub range: [f64; 2],
+    /// The share of hits that are on their side of the boundary that hits of other queries have, by cross-validation; both kinds being
     /// equally frequent. One half says that distances tell nothing about these classes.
     pub agree: f64,
 }
@@ -69,52 +82,42 @@ impl Agreement {
         observer: &dyn Observer,
     ) -> Result<Option<Self>, Error> {
         let shapes = drawn(shapes);
-        let pairs = (0..shapes.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
-        let (same, others): (Vec<_>, Vec<_>) = pairs
-            .filter(|&(i, j)| shapes[i].content != shapes[j].content)
-            .partition(|&(i, j)| shapes[i].label == shapes[j].label);
-        if same.len() < LEAST || others.is_empty() {
+        let n_queries = shapes.len().min(QUERIES);
+        observer.begin("comparing classes", n_queries);
+        let read = |entry: &Entry| options.prepare(&shape(&entry.id)?);
+        let prepared = shapes.iter().map(read).collect::<Result<Vec<_>, Error>>()?;
+        let hits = |query| {
+            observer.budget().check()?;
+            observer.step();
+            hits(&shapes, &prepared, query)
+        };
+        let hits = (0..n_queries).map(hits).collect::<Result<Vec<_>, Error>>()?;
+        let count = |kind| hits.iter().flatten().filter(|(_, is_one, _)| *is_one == kind).count();
+        let [other_classes, same_class] = [false, true].map(count);
+        // Either shape of a pair may be the query.
+        if same_class < 2 * LEAST || other_classes == 0 {
             return Ok(None);
         }
-        let some = |pairs: &[(usize, usize)]| -> Vec<(usize, usize)> {
-            let n = pairs.len().min(MOST);
-            (0..n).map(|i| pairs[i * pairs.len() / n]).collect()
-        };
-        let (same, others) = (some(&same), some(&others));
-        let needed: BTreeSet<usize> = same.iter().chain(&others).flat_map(|&(i, j)| [i, j]).collect();
-        let prepared = needed.into_iter().map(|i| Ok((i, options.prepare(&shape(&shapes[i].id)?)?)));
-        let prepared = prepared.collect::<Result<HashMap<usize, PreparedShape>, Error>>()?;
-        observer.begin("comparing classes", same.len() + others.len());
-        let budget = observer.budget();
-        let sample = |&(i, j): &(usize, usize)| {
-            budget.check()?;
-            let distance = ShapePair::new([&prepared[&i], &prepared[&j]]).distance().combined;
-            observer.step();
-            let is_one = shapes[i].label == shapes[j].label;
-            let weight = 0.5 / if is_one { same.len() } else { others.len() } as f64;
-            // Two forms that coincide say no more than two that nearly do.
-            Ok::<Sample, Error>((distance.max(1e-3), is_one, weight))
-        };
-        let samples =
-            [&same[..], &others].concat().par_iter().map(sample).collect::<Result<Vec<_>, Error>>()?;
-        let agree: f64 = (0..FOLDS)
-            .map(|fold| {
-                let (held_out, known): (Vec<_>, Vec<_>) =
-                    samples.iter().enumerate().partition(|(i, _)| i % FOLDS == fold);
-                let boundary = boundary(&known.into_iter().map(|(_, sample)| *sample).collect::<Vec<_>>());
-                let right = held_out.into_iter().map(|(_, sample)| sample);
-                let right =
-                    right.filter(|(distance, is_one, _)| (boundary.probability(*distance) > 0.5) == *is_one);
-                right.map(|(.., weight)| weight).sum::<f64>()
-            })
-            .sum();
-        let Boundary { at, steepness, .. } = boundary(&samples);
-        Ok(Some(Self { same_class: same.len(), other_classes: others.len(), boundary: at, steepness, agree }))
+        let [mut right, mut all] = [[0.0; 2]; 2];
+        for fold in 0..FOLDS {
+            let (held_out, known): (Vec<_>, Vec<_>) =
+                hits.iter().enumerate().partition(|(query, _)| query % FOLDS == fold);
+            let boundary = boundary(known.into_iter().flat_map(|(_, hits)| hits).copied().collect());
+            for &(distance, is_one, weight) in held_out.into_iter().flat_map(|(_, hits)| hits) {
+                all[usize::from(is_one)] += weight;
+                if (boundary.probability(distance) > 0.5) == is_one {
+                    right[usize::from(is_one)] += weight;
+                }
+            }
+        }
+        let agree = 0.5 * (right[0] / all[0] + right[1] / all[1]);
+        let Boundary { at: boundary, steepness, range } = boundary(hits.concat());
+        Ok(Some(Self { same_class, other_classes, boundary, steepness, range, agree }))
     }
 
     /// The boundary of classes.
     pub fn classes(&self) -> Boundary {
-        Boundary::new(self.boundary, self.steepness)
+        Boundary { at: self.boundary, steepness: self.steepness, range: self.range }
     }
 
     /// What an index states.
@@ -123,7 +126,7 @@ impl Agreement {
     }
 }
 
-/// The shapes with a class whose pairs are compared.
+/// The shapes with a class among which hits are found.
 fn drawn(mut shapes: Vec<Entry>) -> Vec<Entry> {
     shapes.retain(|shape| !shape.label.is_empty());
     shapes.sort_by_cached_key(|shape| ContentHash::of(&[&shape.id]).start());
@@ -131,20 +134,48 @@ fn drawn(mut shapes: Vec<Entry>) -> Vec<Entry> {
     shapes
 }
 
-/// The boundary of some pairs. One more pair of each kind is at the farthest and the nearest distance of the others, where it
-/// contradicts them (rule of succession), so that the fit is finite.
-fn boundary(samples: &[Sample]) -> Boundary {
-    let ends = samples.iter().fold([f64::INFINITY, 0.0], |[low, high], (d, ..)| [d.min(low), d.max(high)]);
-    let weight = |kind: bool| {
-        samples.iter().find(|(_, is_one, _)| *is_one == kind).map_or(0.0, |(.., weight)| *weight)
+/// The hits of a shape among the others: whether they are of its class, and their weights.
+fn hits(shapes: &[Entry], prepared: &[PreparedShape], query: usize) -> Result<Vec<Sample>, Error> {
+    let (own, asked) = (&shapes[query], &prepared[query]);
+    let is_one = |i: usize| shapes[i].label == own.label;
+    let others = (0..shapes.len()).filter(|&i| shapes[i].content != own.content);
+    let bound = |index: usize| {
+        let distance = ShapeMetric::robust(&asked.fused, &prepared[index].fused);
+        Neighbor { index, distance }
     };
-    let more = [(ends[1], true, weight(true)), (ends[0], false, weight(false))];
-    let found = Boundary::fitted(&[samples, &more].concat(), [0.0, 1.0]);
-    match found.at.is_finite() && found.at > 0.0 && found.steepness > 0.0 {
-        true => found,
-        // Pairs of one class are no nearer than others: no distance tells anything.
-        false => Boundary::new(ShapeMetric::SAME_CLASS.at, 0.0),
+    let mut near: Vec<Neighbor> = others.map(bound).collect();
+    near.sort_by(Neighbor::by_distance);
+    let nearest = |near: &[Neighbor], k| {
+        let found = rerank(asked, near.iter().copied(), k, |i| Ok(&prepared[i]))?.nearest.into_iter();
+        Ok::<_, Error>(found.map(|(hit, _)| (hit.distance.max(LEAST_DISTANCE), is_one(hit.index))))
+    };
+    let class = near.iter().filter(|other| is_one(other.index)).count() as f64;
+    let (mut room, mut hits) = (HITS as f64, Vec::new());
+    for (distance, is_one) in nearest(&near, HITS)? {
+        let weight = f64::min(room, if is_one { (class + 1.0) / class } else { 1.0 });
+        room -= weight;
+        if weight > 0.0 {
+            hits.push((distance, is_one, weight));
+        }
     }
+    if hits.iter().all(|(_, is_one, _)| *is_one) {
+        near.retain(|other| !is_one(other.index));
+        hits.extend(nearest(&near, 1)?.map(|(distance, is_one)| (distance, is_one, 1.0)));
+    }
+    Ok(hits)
+}
+
+/// The boundary of some hits. One more of each kind is at the farthest and the nearest distance of the others, where it
+/// contradicts them (rule of succession), so that the fit is finite.
+fn boundary(mut hits: Vec<Sample>) -> Boundary {
+    let [low, high] =
+        hits.iter().fold([f64::INFINITY, 0.0], |[low, high], (d, ..)| [d.min(low), d.max(high)]);
+    hits.extend([(high, true, 1.0), (low, false, 1.0)]);
+    // Where most far hits are of one class, too, no distance has equal odds, unless all odds are reached.
+    let found = [[0.1, 0.9], [0.0, 1.0]].map(|range| Boundary::fitted(&hits, range));
+    let is_usable = |found: &Boundary| found.at.is_finite() && found.at > 0.0 && found.steepness > 0.0;
+    // Else hits of one class are no nearer than others: no distance tells anything.
+    found.into_iter().find(is_usable).unwrap_or(Boundary::new(ShapeMetric::SAME_CLASS.at, 0.0))
 }
 
 /// Finishes an index, with what its classes say.

@@ -64,10 +64,10 @@ fn answer(IndexEvaluation { scores, agreement }: &IndexEvaluation) -> Answer {
         ("silhouette", format!("{:.4}: from -1 to 1, above 0 if classes are apart", scores.silhouette)),
     ];
     facts.extend(agreement.map(|it| {
-        let (share, at, pairs) = (100.0 * it.agree, it.boundary, it.same_class + it.other_classes);
+        let (share, at, hits) = (100.0 * it.agree, it.boundary, it.same_class + it.other_classes);
         (
             "classes",
-            format!("distances agree with {share:.0} % of {pairs} pairs; those of one class end at {at:.2}"),
+            format!("distances agree with {share:.0} % of {hits} hits; those of one class end at {at:.2}"),
         )
     }));
     let ScoreIntervals { level, resamples, .. } = scores.plain.intervals;
