@@ -26,13 +26,8 @@ mod text;
 use std::process::ExitCode;
 
 use clap::Parser;
-use peak_alloc::PeakAlloc;
 
 use crate::args::{ExperimentArguments, ExperimentCommand};
-
-/// Counts the heap for the experiments that measure memory.
-#[global_allocator]
-static ALLOCATOR: PeakAlloc = PeakAlloc;
 
 fn main() -> ExitCode {
     let arguments = ExperimentArguments::parse();

@@ -10,13 +10,7 @@ mod table;
 
 use std::process::ExitCode;
 
-use peak_alloc::PeakAlloc;
-
 use crate::args::{Arguments, parsed};
-
-/// Counts the heap for `canonform methods`, which reports the peak of every method.
-#[global_allocator]
-static ALLOCATOR: PeakAlloc = PeakAlloc;
 
 fn main() -> ExitCode {
     let Arguments { common, command } = parsed();

@@ -1,15 +1,20 @@
-//! Peak memory, as the counting allocator of a program knows it, and the limit that the system sets.
+//! Peak memory, and the limit that the system sets.
 
-use peak_alloc::PeakAlloc;
+use std::alloc::System;
+
+use peakmem_alloc::{INSTRUMENTED_SYSTEM, PeakMemAlloc, PeakMemAllocTrait};
+
+/// Counts the heap of the program. Memory grows in place and comes zeroed where the system can do that.
+#[global_allocator]
+static ALLOCATOR: &PeakMemAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 /// Runs `work` and returns its result with the most bytes on the heap at once while it ran, beyond those before.
 ///
-/// Counts the whole program, so measure one thing at a time; 0 unless [`PeakAlloc`] is its global allocator.
+/// Counts the whole program, so measure one thing at a time.
 pub fn with_peak_bytes<T>(work: impl FnOnce() -> T) -> (T, usize) {
-    PeakAlloc.reset_peak_usage();
-    let before = PeakAlloc.current_usage();
+    ALLOCATOR.reset_peak_memory();
     let result = work();
-    (result, PeakAlloc.peak_usage().saturating_sub(before))
+    (result, ALLOCATOR.get_peak_memory())
 }
 
 /// The memory that the program may reserve, in bytes, if the user has limited it with `ulimit -v`; known on Linux only.
@@ -37,9 +42,6 @@ mod tests {
         assert_eq!(parse_limit(&text("unlimited")), None);
         assert_eq!(parse_limit(""), None);
     }
-
-    #[global_allocator]
-    static ALLOCATOR: PeakAlloc = PeakAlloc;
 
     #[test]
     fn freed_memory_counts() {
