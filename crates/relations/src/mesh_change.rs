@@ -51,10 +51,10 @@ impl Displacements {
     fn new(
         mesh: &TriMesh,
         faces: impl Iterator<Item = usize>,
-        of: impl Fn(VertexId) -> Vector3<f64>,
+        mut of: impl FnMut(VertexId) -> Vector3<f64>,
     ) -> Self {
         let (mut n, mut joint, mut squares, mut fourths) = (0.0, 0.0, 0.0, 0.0);
-        for [a, b, c] in faces.map(|f| mesh.faces[f].map(&of)) {
+        for [a, b, c] in faces.map(|f| mesh.faces[f].map(&mut of)) {
             n += 3.0;
             joint += a.dot(&b) + b.dot(&c) + c.dot(&a);
             for square in [a, b, c].map(|d| d.norm_squared()) {
@@ -81,9 +81,13 @@ impl Displacements {
 
     /// Of vertices of one mesh from the surface of another, under the map from one to the other.
     pub(super) fn from_surface(from: &MeshGeometry, to: &MeshGeometry, map: &Similarity) -> Self {
+        // Vertices are corners of several faces.
+        let mut known = vec![None; from.n_vertices()];
         Self::new(from.mesh(), from.some_faces(), |v| {
-            let p = map.apply(&from.mesh().positions[v.index()]);
-            to.surface.tree().nearest(&p).map_or(Vector3::zeros(), |near| p - near.point)
+            *known[v.index()].get_or_insert_with(|| {
+                let p = map.apply(&from.mesh().positions[v.index()]);
+                to.surface.tree().nearest(&p).map_or(Vector3::zeros(), |near| p - near.point)
+            })
         })
     }
 }
