@@ -22,24 +22,27 @@ impl SparseSymmetric {
     /// # Panics
     /// If a row or column is not below `order`.
     pub fn from_entries(order: usize, entries: impl IntoIterator<Item = (usize, usize, f64)>) -> Self {
-        let below_diagonal = |(i, j, value): (usize, usize, f64)| {
+        let (mut diagonal, mut below) = (vec![0.0; order], Vec::new());
+        for (i, j, value) in entries {
             assert!(i.max(j) < order, "entry ({i}, {j}) is outside of a matrix of order {order}");
-            (i.min(j), i.max(j), value)
-        };
-        let diagonal = (0..order).map(|i| (i, i, 0.0));
-        let mut entries: Vec<_> = diagonal.chain(entries).map(below_diagonal).collect();
-        // A stable sort, so that sums are taken in the order of the entries.
-        entries.par_sort_by_key(|(column, row, _)| (*column, *row));
-        let mut matrix = Self { column_starts: Vec::new(), rows: Vec::new(), values: Vec::new() };
-        for run in entries.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-            let (column, row, _) = run[0];
-            if row == column {
-                matrix.column_starts.push(matrix.rows.len());
+            match i == j {
+                true => diagonal[i] += value,
+                false => below.push((i.min(j), i.max(j), value)),
             }
-            matrix.rows.push(row);
-            matrix.values.push(run.iter().map(|(.., value)| value).sum());
         }
-        matrix.column_starts.push(matrix.rows.len());
+        // A stable sort, so that sums are taken in the order of the entries.
+        below.par_sort_by_key(|(column, row, _)| (*column, *row));
+        let mut below = below.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).peekable();
+        let mut matrix = Self { column_starts: vec![0], rows: Vec::new(), values: Vec::new() };
+        for (column, value) in diagonal.into_iter().enumerate() {
+            matrix.rows.push(column);
+            matrix.values.push(value);
+            while let Some(run) = below.next_if(|run| run[0].0 == column) {
+                matrix.rows.push(run[0].1);
+                matrix.values.push(run.iter().map(|(.., value)| value).sum());
+            }
+            matrix.column_starts.push(matrix.rows.len());
+        }
         matrix
     }
 
