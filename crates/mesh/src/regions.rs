@@ -232,7 +232,7 @@ fn flats(mesh: &TriMesh, topology: &Topology) -> (Vec<Flat>, Vec<usize>) {
     let sq_area = |f: usize| vectors[f].norm_squared();
     order.sort_unstable_by(|&f, &g| sq_area(g).total_cmp(&sq_area(f)).then(f.cmp(&g)));
     let mut of_face = vec![NONE; mesh.n_faces()];
-    let mut flats = Vec::new();
+    let (mut flats, mut pending) = (Vec::new(), Vec::new());
     for seed in order {
         if of_face[seed] != NONE {
             continue;
@@ -245,7 +245,7 @@ fn flats(mesh: &TriMesh, topology: &Topology) -> (Vec<Flat>, Vec<usize>) {
             is_near && vectors[f].dot(&normal) > -sliver
         };
         let mut flat = Flat { normal, faces: Vec::new(), area: 0.0 };
-        let mut pending = vec![seed];
+        pending.push(seed);
         of_face[seed] = flats.len();
         while let Some(f) = pending.pop() {
             flat.faces.push(f);
