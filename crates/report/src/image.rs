@@ -85,24 +85,6 @@ impl RgbaImage {
         &mut self.pixels
     }
 
-    /// Red, green and blue bytes over white, with every pixel repeated in a square of `zoom` x `zoom`.
-    pub(crate) fn rgb_bytes(&self, zoom: u32) -> Vec<u8> {
-        let zoom = zoom as usize;
-        let over_white = |[r, g, b, alpha]: &[u8; 4]| {
-            [r, g, b].map(|&c| {
-                let (c, alpha) = (u32::from(c), u32::from(*alpha));
-                ((c * alpha + 255 * (255 - alpha) + 127) / 255) as u8
-            })
-        };
-        let mut bytes = Vec::with_capacity(self.pixels.len() * 3 * zoom * zoom);
-        for row in self.pixels.chunks(self.width.max(1) as usize) {
-            let line: Vec<u8> =
-                row.iter().flat_map(|p| std::iter::repeat_n(over_white(p), zoom)).flatten().collect();
-            (0..zoom).for_each(|_| bytes.extend_from_slice(&line));
-        }
-        bytes
-    }
-
     /// Writes the image as a PNG file, completely or not at all.
     ///
     /// # Errors
@@ -129,7 +111,7 @@ impl RgbaImage {
 }
 
 /// The bytes of a PNG file of 8-bit sRGB; `bytes` holds the channels of `color`, row by row.
-pub(crate) fn encode_png(
+fn encode_png(
     width: u32,
     height: u32,
     color: png::ColorType,

@@ -1,6 +1,6 @@
 //! Records of experiments, with their figures, tables and page; pictures of meshes, and surfaces in the browser.
 //!
-//! `experiments` -> [`Record`] (JSON) -> **report** -> SVG / PNG / text / one HTML page
+//! `experiments` -> [`Record`] (JSON) -> **report** -> SVG / text / one HTML page
 //!
 //! A record holds all that is shown as data: nothing here computes results, and every record is drawn in the same way.
 //!

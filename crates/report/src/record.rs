@@ -3,7 +3,7 @@
 //! A run writes its [`Record`] once; figures, tables and the page are made from it as often as needed.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use base::files::{FileError, write_bytes};
 use serde::{Deserialize, Serialize};
@@ -278,13 +278,6 @@ impl Record {
             figure.save(folder, name)?;
         }
         Ok(write_bytes(&path, &json)?)
-    }
-}
-
-impl Figure {
-    /// The path of a static file of the figure.
-    pub(crate) fn file(&self, folder: &Path, name: &str, extension: &str) -> PathBuf {
-        folder.join(format!("{name}-{}.{extension}", self.part))
     }
 }
 

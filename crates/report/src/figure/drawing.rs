@@ -1,7 +1,7 @@
-//! Drawings by plotters, as PNG and SVG of the same content.
+//! Drawings by plotters, as SVG.
 //!
 //! Drawings are measured in **units**: [`PAGE_WIDTH`] of them are as wide as the text of a printed page (7 inches), so
-//! a type size of 16 units prints at 8 points. plotters counts in whole pixels, of which a unit has [`PX`] in all files.
+//! a type size of 16 units prints at 8 points. plotters counts in whole pixels, of which a unit has [`PX`].
 
 use std::sync::OnceLock;
 
@@ -14,12 +14,12 @@ use plotters::style::{FontTransform, register_font};
 use super::axis::PlotAxis;
 use crate::color::{Rgb, class_color, hex};
 use crate::error::ReportError;
-use crate::image::{RgbaImage, encode_png};
+use crate::image::RgbaImage;
 use crate::markup::escape;
 
 /// Pixels of plotters per unit.
 pub(crate) const PX: i32 = 4;
-/// Pixels per unit of a [`Picture`] and of the PNG: 286 dots per inch in print.
+/// Pixels per unit of a [`Picture`]: 286 dots per inch in print.
 pub(crate) const PICTURE_PX: i32 = 2;
 /// Width of a figure that fills the text of a page, in units.
 pub(crate) const PAGE_WIDTH: i32 = 1000;
@@ -51,7 +51,7 @@ pub(crate) const NAME_MARGIN: f64 = 5.0;
 /// Type size of titles.
 pub(crate) const TITLE: f64 = 19.0;
 
-/// The embedded font of the PNG; for the SVG with fonts of similar width after it.
+/// The embedded font, which measures text; in the SVG with fonts of similar width after it.
 const FONT: &str = "DejaVu Sans, Bitstream Vera Sans, Verdana, sans-serif";
 
 pub(crate) type Area<DB> = DrawingArea<DB, Shift>;
@@ -176,25 +176,6 @@ pub(crate) fn bar_labels<DB: DrawingBackend>(
     mesh.set_all_tick_mark_size((0.3 * size * f64::from(scale)) as i32).y_label_offset(drop_of(&label));
     mesh.label_style(label.clone()).axis_desc_style(label).y_label_formatter(&format).y_desc(&axis.name);
     mesh.draw()
-}
-
-/// The bytes of a drawing as PNG.
-pub(crate) fn png(drawing: &impl Drawing) -> Result<Vec<u8>, String> {
-    let pictures = drawing.pictures().map_err(|e| e.to_string())?;
-    let [width, height] = drawing.size().map(|side| (side * PX) as u32);
-    // Drawn finer and averaged, which smooths every edge.
-    let fine = (PX / PICTURE_PX) as u32;
-    let pixels = pixels([width, height], |area| {
-        for (picture, [left, top]) in pictures {
-            let size = (picture.width() * fine, picture.height() * fine);
-            let place = (left * PX, top * PX);
-            let raster = BitMapElement::with_owned_buffer(place, size, picture.rgb_bytes(fine));
-            raster.map_or(Ok(()), |raster| area.draw(&raster))?;
-        }
-        drawing.draw(area).map(drop)
-    })?;
-    let pixels = average(&pixels, width as usize, fine as usize);
-    encode_png(width / fine, height / fine, png::ColorType::Rgb, &pixels).map_err(|e| e.to_string())
 }
 
 /// RGB pixels of a drawing on white, row by row.

@@ -1,6 +1,6 @@
 //! Figures of records, drawn by plotters.
 //!
-//! [`Figure`] -> PNG and SVG files ([`Figure::save`]), or SVG in the page ([`Figure::svg`]), which names points on hover.
+//! [`Figure`] -> SVG, as a file ([`Figure::save`]) or in the page ([`Figure::svg`]), which names points on hover.
 
 mod axis;
 mod drawing;
@@ -21,18 +21,13 @@ use crate::error::ReportError;
 use crate::record::{Figure, FigurePanels};
 
 impl Figure {
-    /// Draws the figure as PNG and as SVG. On logarithmic axes, values that are not positive are left out.
+    /// Writes the figure as SVG. On logarithmic axes, values that are not positive are left out.
     ///
     /// # Errors
     /// [`ReportError::Draw`] or [`ReportError::File`] if drawing or writing fails.
     pub fn save(&self, folder: &Path, name: &str) -> Result<(), ReportError> {
-        let png = match &self.panels {
-            FigurePanels::Plots(plots) => drawing::png(&plot::Plots::new(plots)),
-            FigurePanels::Heats(heats) => drawing::png(&heat::Heats(heats)),
-            FigurePanels::Tiles(tiles) => drawing::png(tiles),
-        };
-        write_bytes(&self.file(folder, name, "png"), &png.map_err(|e| ReportError::draw(name, e))?)?;
-        Ok(write_bytes(&self.file(folder, name, "svg"), self.svg()?.as_bytes())?)
+        let path = folder.join(format!("{name}-{}.svg", self.part));
+        Ok(write_bytes(&path, self.svg()?.as_bytes())?)
     }
 
     /// The text of the figure as SVG.

@@ -25,18 +25,14 @@ pub(super) fn section(name: &str, record: &Record) -> Result<String, ReportError
     Ok(html.concat())
 }
 
-/// A figure with links to its files; surfaces can also be turned where scripts run.
+/// A figure with a link to its file; surfaces can also be turned where scripts run.
 fn drawn(name: &str, figure: &Figure) -> Result<String, ReportError> {
     let caption = escape(&figure.caption);
     let svg = figure.svg()?.replacen("<svg ", &format!("<svg role=\"img\" aria-label=\"{caption}\" "), 1);
-    let link = |kind: &str| {
-        let file = format!("{name}-{}.{}", figure.part, kind.to_lowercase());
-        format!("<a href=\"{file}\" download>{kind}</a>")
-    };
-    let links = ["PNG", "SVG"].map(link).join(" ");
+    let file = format!("{name}-{}.svg", figure.part);
     let mut html = format!(
         "<figure>\n<div class=\"drawing\">{svg}</div>\n\
-         <figcaption>{caption} <span class=\"files\">{links}</span></figcaption>\n</figure>\n"
+         <figcaption>{caption} <span class=\"files\"><a href=\"{file}\" download>SVG</a></span></figcaption>\n</figure>\n"
     );
     if let FigurePanels::Tiles(tiles) = &figure.panels {
         let id = format!("{name}-{}", figure.part);
