@@ -8,6 +8,7 @@ use surface::{
 };
 
 use crate::order::{patches_of, ranks};
+use crate::plane::around;
 
 /// Limit of the mean number of windows propagated per face. Real surfaces of a million vertices need less than a
 /// hundred; only needles with angles below 1e-6 around one vertex come near the limit.
@@ -48,7 +49,7 @@ impl FaceFrame {
     #[inline]
     pub(super) fn new(faces: &Faces, corner: CornerId) -> Self {
         let (face, slot) = (faces.of(corner.face()), corner.slot());
-        let (a, b) = (next(slot), next(next(slot)));
+        let [a, b] = around(slot);
         // A side is in the place of the corner opposite: `ac` in that of `b`.
         let (base, ac, bc) = (face.lengths[slot], face.lengths[b], face.lengths[a]);
         let per_base = 1.0 / base;
@@ -223,7 +224,7 @@ impl Faces {
     /// Visits the corners opposite the same edge as this one in other faces.
     #[inline]
     pub(super) fn for_each_facing(&self, own: CornerId, mut visit: impl FnMut(CornerId, Along)) {
-        let start = |corner: CornerId| self.of(corner.face()).vertices[next(corner.slot())];
+        let start = |corner: CornerId| self.of(corner.face()).vertices[around(corner.slot())[0]];
         let after = |corner: CornerId| self.of(corner.face()).across[corner.slot()];
         let mut corner = after(own);
         while corner != own {
@@ -236,8 +237,8 @@ impl Faces {
 impl Face {
     /// Scalar product of the two sides at a corner.
     pub(super) fn cosine(&self, slot: usize) -> f64 {
-        let [base, p, q] = [slot, next(slot), next(next(slot))].map(|i| self.lengths[i]);
-        scalar_product(base, p, q)
+        let [p, q] = around(slot).map(|side| self.lengths[side]);
+        scalar_product(self.lengths[slot], p, q)
     }
 
     pub(super) fn angle(&self, slot: usize) -> f64 {
@@ -248,13 +249,6 @@ impl Face {
     pub(super) fn is_point_like(&self, slot: usize) -> bool {
         self.lengths[slot] <= MIN_EDGE * self.lengths.iter().copied().fold(0.0, f64::max)
     }
-}
-
-/// The slot after `slot` in a face.
-#[inline]
-pub(super) fn next(slot: usize) -> usize {
-    // A table, because a branch would be mispredicted every third time.
-    [1, 2, 0][slot]
 }
 
 /// The sides of a triangle and twice its area, from lengths that may violate the triangle inequality by rounding.
@@ -323,7 +317,7 @@ impl Fans {
         // An edge without length has no direction.
         for face in &faces.all {
             for slot in (0..3).filter(|slot| face.is_point_like(*slot)) {
-                for end in [1, 2].map(|step| face.vertices[(slot + step) % 3]) {
+                for end in around(slot).map(|end| face.vertices[end]) {
                     kinds[end as usize] = VertexKind::Irregular;
                 }
             }

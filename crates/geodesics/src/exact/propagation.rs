@@ -6,9 +6,9 @@ use surface::{CornerId, VertexKind};
 use super::bearing::Bearing;
 use super::envelope::trim;
 use super::front::WindowFront;
-use super::prepared::{Along, Arrival, FaceFrame, PreparedSurface, next};
-use super::pseudo_sources::Emission;
+use super::prepared::{Along, Arrival, FaceFrame, PreparedSurface};
 use super::window::{Apex, Passes, PathWindow, Until};
+use crate::plane::around;
 use crate::source::Source;
 
 /// Memory that runs share.
@@ -45,19 +45,20 @@ pub(super) fn run<'a, D: Bearing>(
 ) -> Result<&'a WindowFront<D>, Exceeded> {
     let ExactScratch { front, arrived, left, right } = scratch;
     front.reset(surface.n_vertices(), 3 * surface.faces.all.len(), limits);
-    let mut emission = Emission { surface, around, front, steps_left: Some(max_windows) };
-    sources.iter().for_each(|source| emission.start_at(source));
-    let max_distance = max_distance * (1.0 + LIMIT_SLACK);
-    let mut propagation = Propagation { emission, left, right, max_distance, meter: limits.meter() };
+    let (steps_left, max_distance) = (Some(max_windows), max_distance * (1.0 + LIMIT_SLACK));
+    let meter = limits.meter();
+    let mut propagation =
+        Propagation { surface, around, front, steps_left, left, right, max_distance, meter };
+    sources.iter().for_each(|source| propagation.start_at(source));
     loop {
         let result = propagation.advance(arrived);
         if let Err(Exceeded::Memory { .. } | Exceeded::Allocation { .. }) = result {
-            *propagation.emission.front = WindowFront::default();
+            *propagation.front = WindowFront::default();
         }
         result?;
         limits.check()?;
         // Without the windows beyond, distances may be too long.
-        if propagation.emission.steps_left.is_none() {
+        if propagation.steps_left.is_none() {
             return Err(Exceeded::Steps { limit: max_windows });
         }
         if !propagation.relax_edges() {
@@ -68,8 +69,13 @@ pub(super) fn run<'a, D: Bearing>(
 }
 
 /// One run over a surface.
-struct Propagation<'a, D: Bearing> {
-    emission: Emission<'a, D>,
+pub(super) struct Propagation<'a, D: Bearing> {
+    pub(super) surface: &'a PreparedSurface,
+    /// What is known of the source.
+    pub(super) around: &'a D::Source,
+    pub(super) front: &'a mut WindowFront<D>,
+    /// How many windows may still be emitted or propagated; `None` once there were more.
+    pub(super) steps_left: Option<usize>,
     left: &'a mut Vec<PathWindow<D>>,
     right: &'a mut Vec<PathWindow<D>>,
     /// Windows beyond this need not be propagated.
@@ -80,18 +86,18 @@ struct Propagation<'a, D: Bearing> {
 impl<D: Bearing> Propagation<'_, D> {
     fn advance(&mut self, arrived: &mut Vec<PathWindow<D>>) -> Result<(), Exceeded> {
         // The path to a vertex within the limit may cross an edge between two vertices beyond it.
-        let last = self.max_distance + self.emission.surface.faces.longest_edge;
-        while let Some((distance, vertex)) = self.emission.front.pop() {
+        let last = self.max_distance + self.surface.faces.longest_edge;
+        while let Some((distance, vertex)) = self.front.pop() {
             if distance > last {
                 break;
             }
-            let (arrival, bearing) = self.emission.front.arrival(vertex);
-            let kind = self.emission.surface.fans.kind(vertex);
+            let (arrival, bearing) = self.front.arrival(vertex);
+            let kind = self.surface.fans.kind(vertex);
             if arrival == Arrival::Anywhere || kind != VertexKind::Ordinary {
-                self.emission.emit_from(vertex, distance, arrival, bearing);
+                self.emit_from(vertex, distance, arrival, bearing);
             }
-            self.emission.front.release(vertex);
-            while let Some(corner) = self.emission.front.next_ready(arrived) {
+            self.front.release(vertex);
+            while let Some(corner) = self.front.next_ready(arrived) {
                 self.enter_face(corner, arrived);
                 self.check()?;
             }
@@ -102,24 +108,23 @@ impl<D: Bearing> Propagation<'_, D> {
 
     #[inline]
     fn check(&mut self) -> Result<(), Exceeded> {
-        let front = &mut *self.emission.front;
-        front.check_memory()?;
-        self.meter.count(OPERATIONS * front.take_work())
+        self.front.check_memory()?;
+        self.meter.count(OPERATIONS * self.front.take_work())
     }
 
     /// Relaxes all edges; returns whether a label was lowered. Needed for faces that violate the triangle inequality,
     /// through which no window passes.
     fn relax_edges(&mut self) -> bool {
         let mut is_any = false;
-        let front = &mut *self.emission.front;
-        for face in &self.emission.surface.faces.all {
+        let front = &mut *self.front;
+        for face in &self.surface.faces.all {
             for slot in 0..3 {
-                let ends = [next(slot), next(next(slot))].map(|end| face.vertices[end]);
+                let ends = around(slot).map(|end| face.vertices[end]);
                 let [p, q] = ends.map(|v| front.distance(v));
                 let (near, far, [from, to]) = if p < q { (p, q, ends) } else { (q, p, [ends[1], ends[0]]) };
                 let along = near + face.lengths[slot];
                 if along < far - EDGE_SLACK * far.min(f64::MAX) && along <= self.max_distance {
-                    let bearing = front.arrival(from).1.along_edge(self.emission.around, to);
+                    let bearing = front.arrival(from).1.along_edge(self.around, to);
                     front.reach(to, along, Arrival::Anywhere, bearing);
                     is_any = true;
                 }
@@ -130,12 +135,12 @@ impl<D: Bearing> Propagation<'_, D> {
 
     /// Propagates the windows at the base of a corner across its face.
     fn enter_face(&mut self, corner: CornerId, windows: &mut Vec<PathWindow<D>>) {
-        let Emission { surface, around, front, steps_left } = &mut self.emission;
+        let Self { surface, around, front, steps_left, max_distance, .. } = &mut *self;
         let frame = FaceFrame::new(&surface.faces, corner);
         let [a, b, c] = frame.vertices;
         let ends = [front.distance(a), front.distance(b)];
-        if self.max_distance < f64::INFINITY {
-            windows.retain(|window| window.least_distance() <= self.max_distance);
+        if *max_distance < f64::INFINITY {
+            windows.retain(|window| window.least_distance() <= *max_distance);
         }
         trim(windows, frame.base, ends);
         *steps_left = steps_left.and_then(|left| left.checked_sub(windows.len()));
@@ -154,7 +159,7 @@ impl<D: Bearing> Propagation<'_, D> {
             }
         }
         let apex = self.propagate(&frame, windows);
-        let front = &mut *self.emission.front;
+        let front = &mut *self.front;
         if let Some(nearest) = apex.nearest.filter(|_| apex.distance < front.distance(c)) {
             let bearing = windows[nearest].bearing.towards(apex.ray(&windows[nearest]));
             front.reach(c, apex.distance, through(apex.direction()), bearing);
@@ -228,14 +233,14 @@ impl<D: Bearing> Propagation<'_, D> {
     /// how often windows circle around the tip of a needle.
     #[inline]
     fn push_left(&mut self, frame: &FaceFrame, window: &PathWindow<D>, end: f64, until: Until) {
-        if end > window.start && window.turn < self.emission.surface.max_turn {
+        if end > window.start && window.turn < self.surface.max_turn {
             frame.project_on_ac(window, [window.start, end], until, self.left);
         }
     }
 
     #[inline]
     fn push_right(&mut self, frame: &FaceFrame, window: &PathWindow<D>, start: f64, until: Until) {
-        if start < window.end && -window.turn < self.emission.surface.max_turn {
+        if start < window.end && -window.turn < self.surface.max_turn {
             frame.project_on_cb(window, [start, window.end], until, self.right);
         }
     }
@@ -243,8 +248,8 @@ impl<D: Bearing> Propagation<'_, D> {
     /// Delivers the windows on the sides of a face to the faces beyond.
     fn deliver(&mut self, corner: CornerId, frame: &FaceFrame) {
         let [a, b, c] = frame.vertices;
-        let Emission { surface, front, .. } = &mut self.emission;
-        let sides = [(&*self.left, corner.prev(), [a, c]), (&*self.right, corner.next(), [b, c])];
+        let Self { surface, front, left, right, .. } = self;
+        let sides = [(&*left, corner.prev(), [a, c]), (&*right, corner.next(), [b, c])];
         for ((windows, own, ends), length) in sides.into_iter().zip(frame.sides) {
             if windows.is_empty() {
                 continue;

@@ -3,23 +3,13 @@
 use surface::{CornerId, FaceId, SurfacePoint, VertexId, Winding};
 
 use super::bearing::Bearing;
-use super::front::WindowFront;
-use super::prepared::{Along, Arrival, FaceFrame, FanSector, PreparedSurface, next};
+use super::prepared::{Along, Arrival, FaceFrame, FanSector};
+use super::propagation::Propagation;
 use super::window::PathWindow;
+use crate::plane::around;
 use crate::source::Source;
 
-/// Emits windows into a front.
-#[derive(Debug)]
-pub(super) struct Emission<'a, D: Bearing> {
-    pub(super) surface: &'a PreparedSurface,
-    /// What is known of the source.
-    pub(super) around: &'a D::Source,
-    pub(super) front: &'a mut WindowFront<D>,
-    /// How many windows may still be emitted or propagated; `None` once there were more.
-    pub(super) steps_left: Option<usize>,
-}
-
-impl<D: Bearing> Emission<'_, D> {
+impl<D: Bearing> Propagation<'_, D> {
     /// Starts at a source.
     pub(super) fn start_at(&mut self, source: &Source) {
         let surface = self.surface;
@@ -57,7 +47,7 @@ impl<D: Bearing> Emission<'_, D> {
             }
             let frame = FaceFrame::new(&self.surface.faces, corner);
             let ([x, height], at) = (frame.apex, barycentric[slot]);
-            let source = [at * x + barycentric[next(next(slot))] * frame.base, at * height];
+            let source = [at * x + barycentric[around(slot)[1]] * frame.base, at * height];
             let distance = (x - source[0]).hypot(height - source[1]);
             let apex = frame.vertices[2];
             self.front.reach(apex, distance, Arrival::Anywhere, D::default().along_edge(self.around, apex));
@@ -104,7 +94,7 @@ impl<D: Bearing> Emission<'_, D> {
     fn emit_from_corner(&mut self, corner: CornerId, (distance, bearing): (f64, D), [low, high]: [f64; 2]) {
         let face = self.surface.face(corner);
         let slot = corner.slot();
-        let (a, b) = (next(slot), next(next(slot)));
+        let [a, b] = around(slot);
         let through = |at: usize, [sin, cos]: [f64; 2]| Arrival::Through {
             corner: CornerId::new(corner.face(), at),
             sin,

@@ -19,12 +19,12 @@
 
 use surface::{CornerId, VertexId};
 
-use super::triangles::{MarchTriangle, around};
+use super::triangles::MarchTriangle;
 use super::window::{
     COLLINEAR, DISAGREEMENT, NEAR_MISS, SourceWindow, below_or_nan, bend_at_limit, select, select_point,
     shadows,
 };
-use crate::plane::{GateSide, PlanePoint, beyond, cross, dot, norm, sub};
+use crate::plane::{GateSide, PlanePoint, around, beyond, cross, dot, norm, sub};
 
 /// Number of crossings solved together.
 pub(super) const LANES: usize = 8;

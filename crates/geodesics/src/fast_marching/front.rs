@@ -7,9 +7,9 @@ use surface::{CornerId, FaceId, NearestFirst, SurfacePoint, VertexId};
 
 use super::crossing::{Crossing, Crossings};
 use super::queue::{Buckets, Labels, NOWHERE};
-use super::triangles::{MarchTriangle, Triangles, around};
+use super::triangles::{MarchTriangle, Triangles};
 use super::window::{ROUNDING, SourceWindow};
-use crate::plane;
+use crate::plane::{self, around};
 use crate::prefetch::prefetch;
 use crate::source::{Source, point_within};
 

@@ -150,16 +150,11 @@ pub struct FastMarching {
     /// The unit of all lengths in the layout, in mesh units. Other than 1 only for very short or very long edges.
     unit: f64,
     triangles: Triangles,
-    solver: LocalSolver,
+    /// Of the planar update, the halves of obtuse corners, by the vertices of their bases.
+    halves: Option<Rows<HalfCorner>>,
+    fronts: Pool<TriangleFront>,
+    planar_fronts: Pool<PlanarFront>,
     budget: Budget,
-}
-
-/// The local solver with its memory for fronts.
-#[derive(Debug)]
-enum LocalSolver {
-    VirtualSource(Pool<TriangleFront>),
-    /// With the halves of obtuse corners, by the vertices of their bases.
-    Planar(Rows<HalfCorner>, Pool<PlanarFront>),
 }
 
 impl FastMarching {
@@ -192,18 +187,14 @@ impl FastMarching {
         let (mean, links) = (mesh.mean_edge_length(), mesh.links().to_vec());
         drop(owned);
         let triangles = Triangles::new(order, &triangulation, &links, &segments, mean);
-        let solver = if carries_sources {
-            LocalSolver::VirtualSource(Pool::default())
-        } else {
-            let at = |v| triangles.number(v);
-            let halves = halves.into_iter().map(|(v, HalfCorner { base, apex, third })| {
-                let half = HalfCorner { base: (at(base.0), base.1), apex: (at(apex.0), apex.1), third };
-                (at(v).index(), half)
-            });
-            let halves: Vec<_> = halves.collect();
-            LocalSolver::Planar(Rows::collect(triangles.order.len(), halves.into_iter()), Pool::default())
-        };
-        Self { unit, triangles, solver, budget: observer.budget() }
+        let at = |v| triangles.number(v);
+        let halves = halves.iter().map(|(v, HalfCorner { base, apex, third })| {
+            let half = HalfCorner { base: (at(base.0), base.1), apex: (at(apex.0), apex.1), third: *third };
+            (at(*v).index(), half)
+        });
+        let halves = (!carries_sources).then(|| Rows::collect(triangles.order.len(), halves));
+        let (fronts, planar_fronts) = (Pool::default(), Pool::default());
+        Self { unit, triangles, halves, fronts, planar_fronts, budget: observer.budget() }
     }
 
     /// Gives the distances from the nearest of `sources` to `found`, by mesh vertex. The front `stops` near a vertex at a
@@ -224,18 +215,22 @@ impl FastMarching {
         };
         let triangles = &self.triangles;
         let numbers = (0..).map(VertexId).zip(&triangles.order);
-        match &self.solver {
-            LocalSolver::VirtualSource(scratch) => scratch.with(|front| {
+        match &self.halves {
+            None => self.fronts.with(|front| {
                 front.run(triangles, sources, &self.budget, |number, distance| {
-                    let longest = || unit * triangles.longest_of(number);
-                    triangles.mesh_vertices(number).all(|v| stops(v, unit * distance, &longest))
+                    let triangle = triangles.at(number);
+                    let longest = || unit * triangle.lengths.into_iter().fold(0.0, f64::max);
+                    let stops_at =
+                        |v: &VertexId| stops(triangles.order[v.index()], unit * distance, &longest);
+                    triangle.vertices().iter().all(stops_at)
                 })?;
                 numbers.for_each(|(internal, v)| found(*v, unit * front.distance(internal)));
                 Ok(())
             }),
-            LocalSolver::Planar(halves, scratch) => scratch.with(|front| {
+            Some(halves) => self.planar_fronts.with(|front| {
                 front.run(triangles, halves, sources, &self.budget, |vertex, distance| {
-                    let longest = || unit * triangles.longest_at(vertex);
+                    let lengths = || triangles.ways_from(vertex).map(|(_, length)| length);
+                    let longest = || unit * lengths().fold(0.0, f64::max);
                     stops(triangles.order[vertex.index()], unit * distance, &longest)
                 })?;
                 numbers.for_each(|(internal, v)| found(*v, unit * front.distance(internal)));

@@ -7,10 +7,10 @@
 use base::{Budget, Exceeded};
 use surface::{CornerId, Frontier, Rows, VertexId, scalar_product, twice_area};
 
-use super::triangles::{Triangles, around};
+use super::triangles::Triangles;
 use super::unfold::HalfCorner;
 use super::window::ROUNDING;
-use crate::plane::{cross, dot, norm, sub};
+use crate::plane::{around, cross, dot, norm, sub};
 use crate::source::Source;
 
 /// Limit of the mean number of visits per vertex, after which finalized vertices are no longer corrected. Where

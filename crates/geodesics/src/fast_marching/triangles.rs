@@ -11,7 +11,7 @@ use surface::{
 
 use super::window::{COLLINEAR, SourceWindow};
 use crate::order::ranks;
-use crate::plane::{self, PlanePoint, cross, dot, sub};
+use crate::plane::{self, PlanePoint, around, cross, dot, sub};
 use crate::prefetch::prefetch;
 
 /// A triangle, laid out in the plane anticlockwise: one cache line. Corners are numbered 0, 1 and 2, sides by the corner
@@ -308,21 +308,6 @@ impl Triangles {
         VertexId(self.rank[v.index()])
     }
 
-    /// The length of the longest side of a triangle.
-    pub(crate) fn longest_of(&self, triangle: FaceId) -> f64 {
-        self.at(triangle).lengths.into_iter().fold(0.0, f64::max)
-    }
-
-    /// The length of the longest edge or link at a vertex.
-    pub(super) fn longest_at(&self, vertex: VertexId) -> f64 {
-        self.ways_from(vertex).map(|(_, length)| length).fold(0.0, f64::max)
-    }
-
-    /// The mesh vertices of a triangle.
-    pub(crate) fn mesh_vertices(&self, triangle: FaceId) -> impl Iterator<Item = u32> {
-        self.at(triangle).vertices().into_iter().map(|v| self.order[v.index()])
-    }
-
     #[inline]
     pub(super) fn at(&self, triangle: FaceId) -> &MarchTriangle {
         &self.all[triangle.index()]
@@ -374,10 +359,4 @@ fn around_edges(triangulation: &Triangulation) -> (HashMap<CornerId, CornerId>, 
         }
     }
     (next, many)
-}
-
-/// The next and the previous of the three corners of a triangle.
-#[inline]
-pub(super) fn around(slot: usize) -> [usize; 2] {
-    [[1, 2], [2, 0], [0, 1]][slot]
 }

@@ -28,7 +28,7 @@ pub(super) struct HalfCorner {
 pub(super) fn split_obtuse_corners(mesh: &IntrinsicMesh) -> (Vec<Link>, Vec<(VertexId, HalfCorner)>) {
     let (topology, mut segments, mut halves) = (mesh.topology(), Vec::new(), Vec::new());
     for corner in (0..topology.n_faces()).flat_map(|f| FaceId::from(f).corners()) {
-        let Some(Split { vertex: middle, length, bases }) = split(mesh, corner) else { continue };
+        let Some((middle, length, bases)) = split(mesh, corner) else { continue };
         let apex = topology.corner_vertex(corner);
         let [_, from_a, from_b] = mesh.sides(corner);
         for ((end, base), side) in topology.edge_ends(corner).into_iter().zip(bases).zip([from_a, from_b]) {
@@ -41,20 +41,9 @@ pub(super) fn split_obtuse_corners(mesh: &IntrinsicMesh) -> (Vec<Link>, Vec<(Ver
     (segments, halves)
 }
 
-/// How an obtuse corner at `C` is split into two acute ones.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Split {
-    /// The vertex `D`.
-    vertex: VertexId,
-    /// `|CD|`
-    length: f64,
-    /// `|AD|` and `|BD|`
-    bases: [f64; 2],
-}
-
-/// Unfolds the surface behind a corner. Returns `None` if the corner is not obtuse, or if the strip reaches the
+/// Unfolds the surface behind a corner: the vertex `D`, `|CD|`, and `|AD|` and `|BD|`. Returns `None` if the corner is not obtuse, or if the strip reaches the
 /// boundary or a non-manifold edge, or gets too long.
-fn split(mesh: &IntrinsicMesh, corner: CornerId) -> Option<Split> {
+fn split(mesh: &IntrinsicMesh, corner: CornerId) -> Option<(VertexId, f64, [f64; 2])> {
     let [c, b, a] = mesh.sides(corner);
     if a * a + b * b >= c * c {
         return None;
@@ -86,7 +75,7 @@ fn split(mesh: &IntrinsicMesh, corner: CornerId) -> Option<Split> {
         match (dot(ray, to_a) > 0.0, dot(ray, to_b) > 0.0) {
             (true, true) => {
                 let bases = [at_a, at_b].map(|end| norm(sub(at, end)));
-                return Some(Split { vertex, length: norm(ray), bases });
+                return Some((vertex, norm(ray), bases));
             }
             // Too far on the side of A: the cone leaves through the edge from the new vertex to the right end.
             (true, false) => (left, at_left, facing) = (vertex, at, opposite_left),
