@@ -73,11 +73,6 @@ impl EditableCorners {
         self.around(v).map(|c| self.vertex(c.next()))
     }
 
-    /// The corner opposite the edge from `u` to `w`, in the face that traverses it in that direction.
-    pub(crate) fn facing(&self, u: VertexId, w: VertexId) -> Option<CornerId> {
-        self.around(u).find(|&c| self.vertex(c.next()) == w).map(CornerId::prev)
-    }
-
     /// Whether the surface stays a manifold if the edge opposite `c` is collapsed: its ends have no common
     /// neighbors but the two apexes, and the apexes keep at least three neighbors.
     pub(crate) fn can_collapse(&self, c: CornerId) -> bool {

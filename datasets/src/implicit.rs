@@ -163,12 +163,9 @@ impl BodyPart {
     /// blending radius a smooth union returns the smaller operand.
     fn may_change(&self, p: Point3<f64>, so_far: f64) -> bool {
         let operand = if self.carves { -so_far } else { so_far };
-        self.lower_bound(p) < operand + self.blend
-    }
-
-    /// A lower bound of the part's value that costs one square root.
-    fn lower_bound(&self, p: Point3<f64>) -> f64 {
-        self.scale * ((p - self.center).norm() - self.radius) - self.slack
+        // A lower bound of the part's value that costs one square root.
+        let lowest = self.scale * ((p - self.center).norm() - self.radius) - self.slack;
+        lowest < operand + self.blend
     }
 }
 

@@ -2,7 +2,7 @@
 
 use base::{Budget, Exceeded};
 use nalgebra::Point3;
-use surface::{NearestFirst, VertexId};
+use surface::{CornerId, NearestFirst, VertexId};
 
 use crate::corner_table::EditableCorners;
 
@@ -150,7 +150,8 @@ impl RestSurface {
 
     /// Merges `gone` into `kept` if possible; returns whether it was.
     fn collapse(&mut self, gone: VertexId, kept: VertexId) -> bool {
-        let Some(c) = self.table.facing(gone, kept) else { return false };
+        let before = |c: &CornerId| self.table.vertex(c.next()) == kept;
+        let Some(c) = self.table.around(gone).find(before).map(CornerId::prev) else { return false };
         let n_neighbors = self.table.neighbors(gone).count() + self.table.neighbors(kept).count() - 4;
         let possible =
             n_neighbors <= MAX_NEIGHBORS && self.table.can_collapse(c) && self.stays_unfolded(gone, kept);

@@ -249,16 +249,12 @@ fn lock(file: &Mutex<File>) -> MutexGuard<'_, File> {
     file.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn seek(file: &mut File, first: usize) -> io::Result<u64> {
-    file.seek(SeekFrom::Start(first as u64 * BYTES as u64))
-}
-
 fn read(file: &mut File, first: usize, out: &mut [f64]) -> io::Result<()> {
-    seek(file, first)?;
+    file.seek(SeekFrom::Start(first as u64 * BYTES as u64))?;
     file.read_exact(bytemuck::cast_slice_mut(out))
 }
 
 fn write(file: &mut File, first: usize, numbers: &[f64]) -> io::Result<()> {
-    seek(file, first)?;
+    file.seek(SeekFrom::Start(first as u64 * BYTES as u64))?;
     file.write_all(bytemuck::cast_slice(numbers))
 }

@@ -16,11 +16,6 @@ pub(crate) struct Located {
 }
 
 impl Located {
-    /// Moves the fault to another file of the mesh.
-    pub(crate) fn of_file(self, file: usize) -> Self {
-        Self { file, ..self }
-    }
-
     /// Moves the fault to a file inside the file.
     pub(crate) fn of_member(self, member: &str) -> Self {
         Self { member: Some(member.to_owned()), ..self }

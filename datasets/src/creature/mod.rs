@@ -144,7 +144,7 @@ fn model(family: usize, options: &CreatureOptions, budget: &Budget) -> Result<Bo
     for attempt in 0..N_ATTEMPTS {
         let mut proportions = Proportions::new(options.seed, plan, round, attempt);
         let draft = PLANS[plan].draft(&mut proportions);
-        if let Some(model) = measured(draft, &mut proportions.into_stream(), budget)? {
+        if let Some(model) = measured(draft, &mut proportions.stream, budget)? {
             return Ok(model);
         }
     }

@@ -7,7 +7,8 @@ use crate::stream::{Purpose, Stream};
 /// The range of every number is divided into two halves, and two families that follow each other on the same plan draw
 /// it from different halves. So they differ in all proportions, whatever the seed is.
 pub(crate) struct Proportions {
-    stream: Stream,
+    /// Also for everything else.
+    pub(crate) stream: Stream,
     /// Draws that all families of a plan have in common.
     shared: Stream,
     /// Number of families of the plan before this one.
@@ -34,10 +35,5 @@ impl Proportions {
     pub(crate) fn count(&mut self, lo: usize, hi: usize) -> usize {
         let n = hi - lo + 1;
         lo + (self.shared.below(n) + self.round) % n
-    }
-
-    /// The random numbers for everything else.
-    pub(crate) fn into_stream(self) -> Stream {
-        self.stream
     }
 }

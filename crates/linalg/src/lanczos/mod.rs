@@ -226,7 +226,8 @@ impl<'a> Lanczos<'a> {
     /// The M-orthonormal vectors `C V y / theta` of the first `m` pairs of `T`: a step of inverse iteration on `V y`
     /// without extra cost for positive `theta`, since `C V y = theta V y + X B E' y`.
     pub(crate) fn vectors(&self, ritz: &Ritz, m: usize) -> Matrix {
-        let mut result = self.basis.combine(&ritz.eigen.vectors.columns(0, m).into_owned());
+        let mut result = Matrix::zeros(self.operator.order(), m);
+        self.basis.add_combinations(&mut result, &ritz.eigen.vectors.columns(0, m).into_owned(), 1.0);
         for (j, mut vector) in result.column_iter_mut().enumerate() {
             let theta = ritz.eigen.values[j];
             if theta > 0.0 {

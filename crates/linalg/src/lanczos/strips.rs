@@ -56,13 +56,6 @@ impl Strips {
         parts.iter().fold(Matrix::zeros(m, n), |sum, part| sum + part).transpose()
     }
 
-    /// The combinations `V H`.
-    pub(crate) fn combine(&self, h: &Matrix) -> Matrix {
-        let mut w = Matrix::zeros(self.n_rows, h.ncols());
-        self.add_combinations(&mut w, h, 1.0);
-        w
-    }
-
     /// Adds `factor` times the combinations `V H` to the columns of a matrix.
     pub(crate) fn add_combinations(&self, w: &mut Matrix, h: &Matrix, factor: f64) {
         let m = w.ncols();

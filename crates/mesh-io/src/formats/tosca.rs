@@ -14,7 +14,8 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
     if mesh.positions.is_empty() {
         return Err(Fault::Empty.whole());
     }
-    mesh.faces = parse_faces(files[1], mesh.n_vertices() as u64, limits).map_err(|fault| fault.of_file(1))?;
+    mesh.faces = parse_faces(files[1], mesh.n_vertices() as u64, limits)
+        .map_err(|fault| Located { file: 1, ..fault })?;
     finish(mesh, limits)
 }
 
