@@ -60,7 +60,10 @@ pub use points::{PointsReport, TriangulatedPoints, triangulate_points};
 pub use refine::refine;
 pub use regions::{RegionShape, SmoothRegion, SmoothRegions};
 pub use remap::{Remap, Remapped};
-pub use repair::{ComponentPolicy, FacePart, Orient, RepairOptions, RepairReport, Repaired, Weld, repair};
+pub use repair::{
+    ComponentPolicy, FacePart, Orient, RepairOptions, RepairReport, Repaired, Weld, coordinate_spacing,
+    repair,
+};
 pub use shortcuts::{CutSurface, Shortcut, ShortcutKind, cut_shortcuts};
 pub use tri_mesh::TriMesh;
 pub use validate::{MeshReport, validate};

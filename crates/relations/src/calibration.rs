@@ -3,6 +3,8 @@
 //! relations` prints the boundary and the shares again.
 //! 27 November 2026.
 
+use std::num::NonZero;
+
 use descriptors::Boundary;
 
 /// One surface, by its distance in multiples of what is allowed: 619 copies, 1,081 others.
@@ -52,3 +54,8 @@ pub(super) const FLUSH: f64 = 2e-4;
 
 /// Standard errors by which independent noise may shift the mean of a region.
 pub(super) const STANDARD_ERRORS: f64 = 4.0;
+
+/// Vertices on which a motion is checked first. Of a piece of another mesh, also the faces that are looked for in it, the candidates for
+/// each, and the least number of faces in common. Half and twice as many change no answer about pieces.
+/// Of a rim, the vertices that may be one.
+pub(super) const FEW: NonZero<usize> = NonZero::new(24).unwrap();

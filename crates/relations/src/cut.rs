@@ -8,7 +8,8 @@ use rigid::{NearestPoints, Similarity};
 use serde::Serialize;
 use surface::VertexId;
 
-use super::exact::{FEW, LEVERAGE};
+use super::calibration::FEW;
+use super::exact::LEVERAGE;
 use super::geometry::MeshGeometry;
 use super::units::UnitChange;
 

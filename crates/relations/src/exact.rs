@@ -1,12 +1,12 @@
 //! Whether two meshes have the same vertices, after a motion, a reflection and a change of size.
 
 use std::collections::HashSet;
-use std::num::NonZero;
 
 use nalgebra::{Point3, Vector3};
 use rigid::{NearestPoints, Similarity};
 use surface::VertexId;
 
+use super::calibration::FEW;
 use super::geometry::MeshGeometry;
 
 /// Most pairs of vertices that are tried as images of two vertices of the first mesh.
@@ -14,10 +14,6 @@ const MAX_PAIRS: usize = 2_000_000;
 
 /// Most motions that are checked on all vertices.
 const MAX_CHECKED: usize = 500;
-
-/// Vertices on which a motion is checked first. Of a piece of another mesh, also the faces that are looked for in it, the candidates for
-/// each, and the least number of faces in common. Half and twice as many change no answer about pieces.
-pub(super) const FEW: NonZero<usize> = NonZero::new(24).unwrap();
 
 /// A motion is found from two or three points, and moves others a few times as far as these are off. It is made precise
 /// afterwards: half and twice as much change no answer about pieces.

@@ -1,22 +1,24 @@
 //! The geometry of a mesh file in space, prepared to be compared with that of others.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::sync::OnceLock;
 
 use base::ContentHash;
-use mesh::{TriMesh, is_noisy};
+use mesh::{TriMesh, coordinate_spacing, is_noisy};
 use nalgebra::Point3;
-use rigid::RigidSurface;
+use rigid::{NearestPoints, RigidSurface};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use surface::{Components, EdgeId, VertexId, components_of_faces};
+
+use super::calibration::{FEW, MAX_NOISE};
 
 /// How coarsely files round coordinates, relative to the largest coordinate: text with six digits, twice. Numbers of 32 bits
 /// are finer. A tolerance of rounding.
 pub(super) const ROUNDING: f64 = 1e-5;
 
-/// Vertices of one geometry are never farther apart than this, relative to the size, wherever the mesh lies, and their sizes and
-/// places are equal up to this share.
+/// Text is not taken to round vertices by more than this, relative to the size, wherever the mesh lies. Sizes and places of one geometry
+/// are equal up to this share.
 pub(super) const MAX_ROUNDING: f64 = 10.0 * ROUNDING;
 
 /// Rounding and other triangles change the sizes of two meshes by at most this multiple of how far their vertices or surfaces are apart, or
@@ -51,8 +53,8 @@ pub struct MeshGeometry {
     pub(super) content: Option<ContentHash>,
     /// Without degenerate and duplicate faces and unused vertices.
     pub(super) surface: RigidSurface,
-    /// The largest coordinate in the file, in mesh units.
-    farthest: f64,
+    /// How far the file may have rounded vertices, in mesh units.
+    rounding: f64,
     components: Components,
     noisy: OnceLock<bool>,
     pub(super) noise: OnceLock<Option<f64>>,
@@ -80,12 +82,12 @@ struct Record {
     size: f64,
     center: [f64; 3],
     axis_std: [f64; 3],
-    farthest: f64,
+    rounding: f64,
 }
 
 impl Serialize for MeshGeometry {
     fn serialize<S: Serializer>(&self, out: S) -> Result<S::Ok, S::Error> {
-        let Self { content, surface, farthest, .. } = self;
+        let Self { content, surface, rounding, .. } = self;
         let record = Record {
             content: *content,
             positions: surface.mesh().positions.iter().map(|p| (*p).into()).collect(),
@@ -93,7 +95,7 @@ impl Serialize for MeshGeometry {
             size: surface.size,
             center: surface.center.into(),
             axis_std: surface.axis_std,
-            farthest: *farthest,
+            rounding: *rounding,
         };
         record.serialize(out)
     }
@@ -101,14 +103,14 @@ impl Serialize for MeshGeometry {
 
 impl<'de> Deserialize<'de> for MeshGeometry {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        let Record { content, positions, faces, size, center, axis_std, farthest } =
+        let Record { content, positions, faces, size, center, axis_std, rounding } =
             Record::deserialize(from)?;
         if faces.iter().flatten().any(|v| v.index() >= positions.len()) {
             return Err(D::Error::custom("a face has a vertex that is not there"));
         }
         let mesh = TriMesh { positions: positions.into_iter().map(Point3::from).collect(), faces };
         let surface = RigidSurface::from_parts(mesh, size, center.into(), axis_std);
-        Ok(Self { content, ..Self::from_surface(surface, farthest) })
+        Ok(Self { content, ..Self::from_surface(surface, rounding) })
     }
 }
 
@@ -117,19 +119,22 @@ impl MeshGeometry {
     /// a mesh without area, or with coordinates that are not finite.
     pub fn new(mesh: &TriMesh, content: Option<ContentHash>) -> Option<Self> {
         let farthest = mesh.positions.iter().map(|p| p.coords.amax()).fold(0.0, f64::max);
-        let surface = RigidSurface::new(welded(mesh)).filter(|_| farthest.is_finite())?;
-        Some(Self { content, ..Self::from_surface(surface, farthest) })
+        let size = Some(mesh.root_of_area()).filter(|_| farthest.is_finite())?;
+        let (spacing, _) = coordinate_spacing(mesh.positions.iter());
+        let rounding = (ROUNDING * farthest).min(MAX_ROUNDING * size).max(spacing.min(MAX_NOISE * size));
+        let surface = RigidSurface::new(welded(mesh, rounding))?;
+        Some(Self { content, ..Self::from_surface(surface, rounding) })
     }
 
-    fn from_surface(surface: RigidSurface, farthest: f64) -> Self {
+    fn from_surface(surface: RigidSurface, rounding: f64) -> Self {
         let components = components_of_faces(surface.mesh().n_vertices(), &surface.mesh().faces);
         let (noisy, noise, exactness, parts) = Default::default();
-        Self { content: None, surface, farthest, components, noisy, noise, exactness, parts }
+        Self { content: None, surface, rounding, components, noisy, noise, exactness, parts }
     }
 
     /// How far vertices may be apart because files round them, relative to the size.
     pub(super) fn rounding(&self) -> f64 {
-        (ROUNDING * self.farthest / self.size()).min(MAX_ROUNDING)
+        self.rounding / self.size()
     }
 
     /// The mesh at unit area, about its centroid.
@@ -216,26 +221,40 @@ impl MeshGeometry {
             let part = |&i: &usize| {
                 whole.faces = std::mem::take(&mut faces[i]);
                 let surface = RigidSurface::new(whole.without_unused_vertices())?;
-                Some(Self::from_surface(surface, self.farthest))
+                Some(Self::from_surface(surface, self.rounding))
             };
             order.iter().take(MAX_COMPONENTS).filter_map(part).collect()
         })
     }
 }
 
-/// The mesh without repeated positions, degenerate and duplicate faces and unused vertices. Vertices stay in order.
-fn welded(mesh: &TriMesh) -> TriMesh {
+/// The mesh without repeated positions, cracks as wide as rounding, degenerate and duplicate faces and unused vertices. Vertices stay
+/// in order.
+fn welded(mesh: &TriMesh, rounding: f64) -> TriMesh {
     let mut first = HashMap::with_capacity(mesh.n_vertices());
-    let merged: Vec<VertexId> = mesh
-        .positions
-        .iter()
-        .enumerate()
-        // Minus zero equals zero.
-        .map(|(v, p)| *first.entry([p.x, p.y, p.z].map(|x| (x + 0.0).to_bits())).or_insert(VertexId::from(v)))
-        .collect();
-    let faces = mesh.faces.iter().map(|face| face.map(|v| merged[v.index()]));
+    // Minus zero equals zero.
+    let place = |p: &Point3<f64>| [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits());
+    let mut same = |(v, p)| *first.entry(place(p)).or_insert(VertexId::from(v));
+    let mesh = merged(mesh, &mesh.positions.iter().enumerate().map(&mut same).collect::<Vec<_>>());
+    let topology = mesh.topology();
+    let rim: BTreeSet<VertexId> =
+        topology.boundary_edges().flat_map(|edge| topology.edges()[edge.index()]).collect();
+    let rim: Vec<VertexId> = rim.into_iter().collect();
+    let at = |v: &VertexId| mesh.positions[v.index()];
+    let Ok(nearest) = NearestPoints::new(rim.iter().map(at).collect()) else { return mesh };
+    let mut into: Vec<VertexId> = (0..mesh.n_vertices()).map(VertexId::from).collect();
+    for v in &rim {
+        let near = nearest.near(&at(v), rounding, FEW).into_iter().map(|i| into[rim[i].index()]);
+        into[v.index()] = near.min().unwrap_or(*v);
+    }
+    merged(&mesh, &into)
+}
+
+/// The mesh with every vertex in the place of another one.
+fn merged(mesh: &TriMesh, into: &[VertexId]) -> TriMesh {
+    let faces = mesh.faces.iter().map(|face| face.map(|v| into[v.index()]));
     let mut faces: Vec<_> = faces.filter(|[a, b, c]| a != b && b != c && c != a).collect();
-    let mut seen = std::collections::HashSet::with_capacity(faces.len());
+    let mut seen = HashSet::with_capacity(faces.len());
     faces.retain(|face| seen.insert(VertexId::sorted(*face)));
     TriMesh { positions: mesh.positions.clone(), faces }.without_unused_vertices()
 }
@@ -247,15 +266,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_soup_of_triangles_is_the_same_geometry() {
+    fn a_soup_of_triangles_is_the_same_geometry_also_with_cracks() {
         let ball = shapes::icosphere(2);
-        let soup = TriMesh {
-            positions: (0..ball.n_faces()).flat_map(|f| ball.triangle(f)).collect(),
-            faces: (0..ball.n_faces()).map(|f| [0, 1, 2].map(|i| VertexId::from(3 * f + i))).collect(),
-        };
-        let [a, b] = [&ball, &soup].map(|mesh| MeshGeometry::new(mesh, None).unwrap());
-        assert_eq!((a.n_vertices(), a.n_faces()), (b.n_vertices(), b.n_faces()));
-        assert!((a.size() - b.size()).abs() < 1e-12);
+        for crack in [0.0, 1e-6] {
+            let mut soup = TriMesh {
+                positions: (0..ball.n_faces()).flat_map(|f| ball.triangle(f)).collect(),
+                faces: (0..ball.n_faces()).map(|f| [0, 1, 2].map(|i| VertexId::from(3 * f + i))).collect(),
+            };
+            soup.positions.iter_mut().enumerate().for_each(|(i, p)| p.x += crack * (i as f64).sin());
+            let [a, b] = [&ball, &soup].map(|mesh| MeshGeometry::new(mesh, None).unwrap());
+            assert_eq!((a.n_vertices(), a.n_faces()), (b.n_vertices(), b.n_faces()));
+            assert!((a.size() - b.size()).abs() < 1e-5);
+        }
         assert!(MeshGeometry::new(&TriMesh::default(), None).is_none());
     }
 

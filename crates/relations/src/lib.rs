@@ -166,6 +166,8 @@ impl Relation {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Vector3;
+
     use super::*;
 
     fn at(combined: f64, scale: f64, handedness: Handedness) -> Relation {
@@ -225,6 +227,16 @@ mod tests {
                 assert_eq!(found.kind, kind, "{factor}, {is_rounded}: {found}");
             }
         }
+    }
+
+    #[test]
+    fn coordinates_that_were_rounded_far_from_the_origin_are_not_noise() {
+        let ring =
+            testkit::moved(&mesh::shapes::torus(24, 12, 200.0, 70.0), |p| p + Vector3::new(4e5, 4.1e6, 0.0));
+        let single = testkit::moved(&ring, |p| p.map(|x| f64::from(x as f32)));
+        let [a, b] = [&ring, &single].map(|mesh| MeshGeometry::new(mesh, None).unwrap());
+        let found = at(0.1, 1.0, Handedness::Unknown).by_meshes([&a, &b]);
+        assert_eq!(found.kind, RelationKind::IdenticalGeometry, "{found}");
     }
 
     #[test]

@@ -253,15 +253,13 @@ fn checked_unit(mesh: &TriMesh) -> Result<f64, MeshError> {
 /// Bits of a number of 64 bits that one of 32 bits lacks.
 const MORE_BITS: u32 = f64::MANTISSA_DIGITS - f32::MANTISSA_DIGITS;
 
-/// The spacing of numbers at the farthest coordinate of any face, relative to the mean side of the faces, and whether that is
-/// the spacing of numbers of 32 bits. Positions are in units of length, powers of two.
+/// The spacing of numbers at the farthest coordinate, and whether that is the spacing of numbers of 32 bits.
 ///
 /// Coordinates were rounded to 32 bits if all fit into these. Rounded ones use the last of the bits at every size; others, such as
 /// whole numbers, are exact.
-fn coordinate_rounding(positions: &[Point3<f64>], surface: &IntrinsicMesh, unit: f64) -> (f64, bool) {
-    let (mut farthest, mut farthest_single, mut fits, mut sides) = (0.0f64, 0.0f64, true, 0.0);
-    let faces = surface.topology().faces();
-    for x in faces.iter().flatten().flat_map(|v| positions[v.index()].iter()) {
+pub fn coordinate_spacing<'p>(positions: impl Iterator<Item = &'p Point3<f64>>) -> (f64, bool) {
+    let (mut farthest, mut farthest_single, mut fits) = (0.0f64, 0.0f64, true);
+    for x in positions.flat_map(|p| p.iter()) {
         let last_bit = x.to_bits().trailing_zeros();
         fits &= last_bit >= MORE_BITS;
         farthest = farthest.max(x.abs());
@@ -269,12 +267,21 @@ fn coordinate_rounding(positions: &[Point3<f64>], surface: &IntrinsicMesh, unit:
             farthest_single = farthest_single.max(x.abs());
         }
     }
+    let is_single = fits && farthest_single > 0.0;
+    let spacing = if is_single { f64::from(f32::EPSILON) * farthest_single } else { f64::EPSILON * farthest };
+    (spacing, is_single)
+}
+
+/// The [spacing](coordinate_spacing) of the coordinates of all faces, relative to the mean side of the faces. Positions are in units
+/// of length, powers of two.
+fn coordinate_rounding(positions: &[Point3<f64>], surface: &IntrinsicMesh, unit: f64) -> (f64, bool) {
+    let faces = surface.topology().faces();
+    let mut sides = 0.0;
     for f in 0..faces.len() {
         let [bc, ca, ab] = FaceId(f as u32).corners().map(|corner| surface.opposite_length(corner) / unit);
         sides += ab + bc + ca;
     }
-    let is_single = fits && farthest_single > 0.0;
-    let spacing = if is_single { f64::from(f32::EPSILON) * farthest_single } else { f64::EPSILON * farthest };
+    let (spacing, is_single) = coordinate_spacing(faces.iter().flatten().map(|v| &positions[v.index()]));
     (spacing * 3.0 * faces.len() as f64 / sides, is_single)
 }
 
