@@ -1,4 +1,4 @@
-use canonform_rigid::{NearestOnSurface, TriangleTree};
+use canonform_rigid::{NearestOnSurface, OnTriangle, TriangleTree};
 use mesh::{TriMesh, shapes};
 use nalgebra::Point3;
 use surface::VertexId;
@@ -25,17 +25,34 @@ fn the_nearest_point_is_the_nearest_of_all_triangles() {
     assert_eq!(TriangleTree::new(&TriMesh::default()).nearest(&Point3::origin()), None);
 }
 
+fn point(weights: [f64; 3], corners: [&[f64]; 3]) -> Vec<f64> {
+    (0..corners[0].len()).map(|i| (0..3).map(|c| weights[c] * corners[c][i]).sum()).collect()
+}
+
 #[test]
-fn the_nearest_point_of_a_triangle_is_no_farther_than_points_inside() {
-    let triangle = [[0.0, 0.0, 0.0], [2.0, 0.1, 0.0], [0.5, 1.0, 0.3]].map(Point3::from);
-    for i in 0..300 {
-        let i = f64::from(i);
-        let query = Point3::new(3.0 * (1.1 * i).sin(), 2.0 * (0.6 * i).cos(), (1.7 * i).sin());
-        let found = on_triangle(&query, &triangle).sq_distance.sqrt();
-        for (u, v) in (0..=20).flat_map(|u| (0..=20 - u).map(move |v| (f64::from(u), f64::from(v)))) {
-            let [a, b, c] = triangle;
-            let inside = a + (b - a) * (u / 20.0) + (c - a) * (v / 20.0);
-            assert!(found <= (inside - query).norm() + 1e-12);
+fn the_nearest_point_of_a_triangle_is_no_farther_than_any_other_and_its_own_are_found_again() {
+    let wave = |seed: f64| -> Vec<f64> { (0..7).map(|i| (seed + 1.7 * f64::from(i)).sin()).collect() };
+    let grid = || (0..=20).flat_map(|i| (0..=20 - i).map(move |j| [i, j].map(|n| f64::from(n) / 20.0)));
+    for case in 0..40 {
+        let seed = 3.1 * f64::from(case);
+        let [p, q, r, x] = [0.0, 0.9, 2.3, 4.7].map(|shift| wave(seed * (1.0 + shift) + shift));
+        let corners = [&p[..], &q[..], &r[..]];
+        let found = OnTriangle::nearest(&x, corners);
+        assert!((found.weights.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+        let sq = |weights: [f64; 3]| -> f64 {
+            point(weights, corners).iter().zip(&x).map(|(a, b)| (a - b).powi(2)).sum()
+        };
+        assert!((sq(found.weights) - found.sq_distance).abs() < 1e-9);
+        for [s, t] in grid() {
+            let weights = [1.0 - s - t, s, t];
+            assert!(sq(weights) >= found.sq_distance - 1e-9);
+            let again = OnTriangle::nearest(&point(weights, corners), corners);
+            assert!(again.weights.iter().zip(weights).all(|(a, b)| (a - b).abs() < 1e-9), "{again:?}");
         }
     }
+    // Without area, and without length.
+    let [p, q] = [wave(0.0), wave(0.9)];
+    let found = OnTriangle::nearest(&q, [&p, &p, &q]);
+    assert!(found.sq_distance.abs() < 1e-12 && (found.weights[2] - 1.0).abs() < 1e-12);
+    assert_eq!(OnTriangle::nearest(&q, [&p, &p, &p]).weights[1..], [0.0, 0.0]);
 }
