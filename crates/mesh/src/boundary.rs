@@ -62,20 +62,3 @@ pub(crate) fn boundaries(mesh: &IntrinsicMesh) -> Vec<(Vec<VertexId>, f64)> {
     }
     found
 }
-
-#[cfg(test)]
-mod tests {
-    use crate::{Surface, shapes};
-
-    #[test]
-    fn boundaries_are_measured_one_by_one() {
-        let length = |mesh| Surface::new(&mesh, &Default::default(), &()).unwrap().longest_boundary();
-        assert_eq!(length(shapes::icosphere(2)), 0.0);
-        let (large, small) = (shapes::grid(11, 6, 0.1), shapes::grid(3, 3, 0.1));
-        assert!((length(large.clone()) - 3.0).abs() < 1e-9);
-        let bridged =
-            crate::RepairOptions { components: crate::ComponentPolicy::Bridge, ..Default::default() };
-        let two = Surface::new(&shapes::disjoint(&[large, small]), &bridged, &()).unwrap();
-        assert!((two.longest_boundary() - 3.0).abs() < 1e-9);
-    }
-}

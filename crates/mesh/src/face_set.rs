@@ -83,17 +83,3 @@ fn duplicates(topology: &Topology) -> BTreeSet<FaceId> {
     }
     found
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn meshes_are_limited_to_numbers_that_leave_two_bits_for_flags() {
-        assert!(check_counts(Topology::MAX_VERTICES, Topology::MAX_FACES).is_ok());
-        for [n_vertices, n_faces] in [[1 << 30, 1], [3, (1 << 30) / 3 + 1], [usize::MAX; 2]] {
-            let error = check_counts(n_vertices, n_faces).unwrap_err();
-            assert!(matches!(error, MeshError::TooLarge { .. }), "{error}");
-        }
-    }
-}

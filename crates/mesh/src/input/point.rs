@@ -140,27 +140,3 @@ impl Serialize for InputPoint {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn point(text: &str) -> InputPoint {
-        text.parse().unwrap()
-    }
-
-    #[test]
-    fn points_are_read_as_they_are_written() {
-        for text in ["17", "17-42@0.3", "0-1@1", "f8@2:1:1", "f0@0:0.125:7"] {
-            assert_eq!(point(text).to_string(), text);
-        }
-        assert_eq!(point(" 4-7 "), point("4-7@0.5"));
-        assert_eq!(point("f9"), point("f9@1:1:1"));
-        for text in
-            ["", "x", "1.5", "1-", "-1", "1-2@2", "1-1", "1@0", "f", "f1@1", "f1@1:1:inf", "f1@nan:1:1"]
-        {
-            let error = text.parse::<InputPoint>().unwrap_err();
-            assert!(error.to_string().contains(&format!("`{text}`")), "{text}");
-        }
-    }
-}

@@ -179,6 +179,3 @@ fn stand_ins(faces: &[[u32; 3]], points: &[Point3<f64>], spacing: f64) -> Vec<Op
         })
         .collect()
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,7 +1,10 @@
-use nalgebra::Vector3;
+//! Laws of point clouds.
 
-use super::*;
-use crate::{RepairOptions, repair, shapes, validate};
+use canonform_mesh::{
+    MeshError, RepairOptions, TriMesh, TriangulatedPoints, repair, shapes, triangulate_points, validate,
+};
+use nalgebra::{Point3, Vector3};
+use surface::VertexId;
 
 fn triangulated(points: &[Point3<f64>]) -> TriangulatedPoints {
     triangulate_points(points, &()).unwrap()
