@@ -12,10 +12,8 @@ fn embedding(coords: Matrix) -> Embedding {
 }
 
 fn square() -> TriMesh {
-    let positions =
-        [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]].map(Point3::from).to_vec();
-    let faces = [[0, 1, 2], [0, 2, 3]].map(|f: [u32; 3]| f.map(VertexId)).to_vec();
-    TriMesh { positions, faces }
+    let corners = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]];
+    testkit::mesh(&corners, &[[0, 1, 2], [0, 2, 3]])
 }
 
 #[test]

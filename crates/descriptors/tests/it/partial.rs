@@ -62,3 +62,17 @@ fn stored_areas_are_the_same_and_lengths_that_do_not_match_are_errors() {
     assert!(PartDiscAreas::new(&distances, &masses, &[1.0], 1.0).is_err());
     assert!(DiscAreas::new(&distances, &[0.0; 50]).is_err());
 }
+
+#[test]
+fn areas_that_differ_much_count_linearly() {
+    let (column, masses) = (Matrix::from_fn(200, 1, |i, _| i as f64), [1.0; 200]);
+    let distances = LandmarkDistances::new(vec![0], column).unwrap();
+    let itself = PartDiscAreas::new(&distances, &masses, &[f64::INFINITY; 200], 0.0).unwrap();
+    let own = DiscAreas::new(&distances, &masses).unwrap().to_numbers();
+    // Logarithms count by their square up to .3, and beyond along the tangent.
+    for (shift, expected) in [(0.1, 0.1f64), (0.3, 0.3), (2.0, (0.3f64 * (2.0 * 2.0 - 0.3)).sqrt())] {
+        let shifted: Vec<f32> = own.iter().map(|area| area + shift as f32).collect();
+        let found = itself.distance(&DiscAreas::from_numbers(&shifted).unwrap());
+        assert!((found.distance - expected).abs() < 1e-3 && found.share == 1.0, "{found:?}, {expected}");
+    }
+}
