@@ -19,8 +19,7 @@ fn a_scene_runs_its_own_scripts_only_and_names_cannot_leave_their_place() {
 }
 
 fn triangle() -> TriMesh {
-    let positions = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 6.0, 4.0]].map(Point3::from).to_vec();
-    TriMesh { positions, faces: vec![[0, 1, 2].map(VertexId)] }
+    testkit::mesh(&[[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 6.0, 4.0]], &[[0, 1, 2]])
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Graph ranking is compared with the plain ranking on generated labelled sets.
 //!
-//! `cargo test -p canonform-retrieval --test it graph_gain -- --nocapture` prints the mean average precision of both on each
-//! set.
+//! `cargo test -p canonform-retrieval --test it graph_gain -- --nocapture --include-ignored` prints the mean average precision
+//! of both on each set.
 
 use std::collections::BTreeMap;
 
