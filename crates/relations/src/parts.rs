@@ -36,11 +36,17 @@ pub(super) struct PartCopy {
     pub(super) confidence: f64,
 }
 
-/// The number of copies of a connected mesh, of one size, among the components of `whole`, and what is true of all of them.
+/// The number of copies of a mesh with one large component, of one size, among the components of `whole`, and what is true of all of them.
 /// `None` if there are none, or if `whole` has one component.
 pub(super) fn occurrences(mesh: &MeshGeometry, whole: &MeshGeometry) -> Option<(usize, PartCopy)> {
     let parts = whole.parts();
-    if mesh.n_components() > 1 || parts.is_empty() {
+    // Crumbs beside a surface are not compared.
+    let mesh = match mesh.parts() {
+        [] if mesh.n_components() == 1 => mesh,
+        [only] => only,
+        _ => return None,
+    };
+    if parts.is_empty() {
         return None;
     }
     // Equal components are compared once.
