@@ -8,8 +8,9 @@
 //! * `KIND STRENGTH cut`: the shortcuts that are cut, relative to the number of welds or handles.
 //!
 //! Also `searched`, the number of queries; `least fused nn` and `least top1`, the lowest share of shapes whose nearest, themselves
-//! included, has their class, both up to strength 3; `false alarms`, the share of undamaged shapes with a shortcut; `unknown`, the largest share of unknown shapes over the damages that keep the surface; and `least told`, the lowest share
-//! of shapes whose relation to the undamaged shape is right.
+//! included, has their class, both up to strength 3 and without planes; `false alarms`, the share of undamaged shapes with a
+//! shortcut; `unknown`, the largest share of unknown shapes over the damages that keep the surface; and `least told`, the lowest
+//! share of shapes whose relation to the undamaged shape is right.
 
 use anyhow::{Context as _, Result};
 use canonform::describe;
@@ -202,7 +203,7 @@ pub(crate) fn robustness(context: &Context<'_>) -> Result<Record> {
             let [top1, unknown] =
                 [share(&found, |found| found.is_top1), share(&found, |found| found.is_unknown)];
             let (_, [nn, precision]) = scores[0];
-            if strength <= MIDDLE {
+            if strength <= MIDDLE && !matches!(damage, Damage::Slice(_)) {
                 (least_nn, least_top1) = (least_nn.min(nn), least_top1.min(top1));
             }
             if damage.keeps_surface() {
