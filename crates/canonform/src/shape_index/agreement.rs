@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use base::{ContentHash, Observer};
 use descriptors::{Boundary, PreparedShape, Sample, ShapeMetric};
 use index::{Entry, Index, IndexError, IndexWriter, Shape};
+use rayon::prelude::*;
 use retrieval::Neighbor;
 use serde::{Deserialize, Serialize};
 
@@ -91,7 +92,7 @@ impl Agreement {
             observer.step();
             hits(&shapes, &prepared, query)
         };
-        let hits = (0..n_queries).map(hits).collect::<Result<Vec<_>, Error>>()?;
+        let hits = (0..n_queries).into_par_iter().map(hits).collect::<Result<Vec<_>, Error>>()?;
         let count = |kind| hits.iter().flatten().filter(|(_, is_one, _)| *is_one == kind).count();
         let [other_classes, same_class] = [false, true].map(count);
         // Either shape of a pair may be the query.

@@ -375,12 +375,14 @@ fn messages_about_extensions_list_the_formats() {
     let all =
         "a .off, .obj, .ply, .stl, .mat, .glb, .gltf, .3mf, .xyz or .pts file, or a .vert with its .tri";
     assert_eq!(mesh_files(), all);
-    let listed = |path: &str| read(Path::new(path)).unwrap_err().to_string();
+    let listed = |path: &str| Format::of(Path::new(path)).err().unwrap().to_string();
     assert!(listed("notes.txt").starts_with("notes.txt: unknown mesh format `.txt`; use .off"));
     assert!(listed("notes").starts_with("notes: the file name has no extension; use .off"));
     let scan =
         "scan.LAS: unknown mesh format `.las`, which `pdal translate in.las out.ply` converts; use .off";
     assert!(listed("scan.LAS").starts_with(scan), "{}", listed("scan.LAS"));
+    let missing = read(Path::new("missing.zip")).unwrap_err().to_string();
+    assert!(missing.starts_with("cannot read missing.zip: "), "{missing}");
 }
 
 #[test]
