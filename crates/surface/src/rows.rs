@@ -56,7 +56,13 @@ impl<T: Copy> Rows<T> {
     /// The items of a row.
     #[inline]
     pub fn row(&self, row: usize) -> &[T] {
-        &self.items[self.offsets[row] as usize..self.offsets[row + 1] as usize]
+        &self.items[self.range(row)]
+    }
+
+    /// Where the items of a row are among [all items](Self::items).
+    #[inline]
+    pub fn range(&self, row: usize) -> std::ops::Range<usize> {
+        self.offsets[row] as usize..self.offsets[row + 1] as usize
     }
 
     /// The items of all rows, one row after the other.

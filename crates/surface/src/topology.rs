@@ -1,5 +1,8 @@
 //! Connectivity: edges, the faces on each edge, the corners at each vertex.
 
+use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use rayon::prelude::*;
 
 use crate::ids::{CornerId, EdgeId, FaceId, VertexId};
@@ -47,6 +50,81 @@ const LIMIT: usize = 1 << 30;
 /// Number of vertices whose edges one thread collects at a time.
 const BLOCK: usize = 512;
 
+/// The edges from some successive vertices to higher ones.
+struct EdgeBlock {
+    edges: Vec<[VertexId; 2]>,
+    /// Per vertex, the number of edges before its own, and at the end the number of all.
+    first_edge: Vec<u32>,
+    /// Per edge, the number of corners opposite the edges before it, and at the end that of all.
+    ends: Vec<u32>,
+    corners: Vec<CornerId>,
+}
+
+impl EdgeBlock {
+    fn with_capacity(n_vertices: usize, n_edges: usize, n_corners: usize) -> Self {
+        let mut block = Self {
+            edges: Vec::with_capacity(n_edges),
+            first_edge: Vec::with_capacity(n_vertices + 1),
+            ends: Vec::with_capacity(n_edges + 1),
+            corners: Vec::with_capacity(n_corners),
+        };
+        block.first_edge.push(0);
+        block.ends.push(0);
+        block
+    }
+
+    fn of(vertices: Range<usize>, faces: &[[VertexId; 3]], vertex_corners: &Rows<CornerId>) -> Self {
+        let n_corners =
+            vertex_corners.range(vertices.end - 1).end - vertex_corners.range(vertices.start).start;
+        let mut block = Self::with_capacity(vertices.len(), n_corners / 2 + 1, n_corners);
+        // The upper ends of all sides and the corners opposite, collected without a branch, so that many faces are
+        // read at once.
+        let (mut sides, mut n_sides) = (vec![(VertexId(0), CornerId(0)); 2 * n_corners + 1], 0);
+        let mut sides_end = Vec::with_capacity(vertices.len());
+        for lower in vertices.clone().map(|v| VertexId(v as u32)) {
+            for corner in vertex_corners.row(lower.index()) {
+                let (next, prev, face) = (corner.next(), corner.prev(), faces[corner.face().index()]);
+                let ends = [face[next.slot()], face[prev.slot()]];
+                sides[n_sides] = (ends[0], prev);
+                n_sides += usize::from(ends[0] > lower);
+                sides[n_sides] = (ends[1], next);
+                n_sides += usize::from(ends[1] > lower);
+            }
+            sides_end.push(n_sides);
+        }
+        let mut start = 0;
+        for (lower, end) in vertices.map(|v| VertexId(v as u32)).zip(sides_end) {
+            let sides = &mut sides[std::mem::replace(&mut start, end)..end];
+            sides.sort_unstable_by_key(|(upper, corner)| u64::from(upper.0) << 32 | u64::from(corner.0));
+            for around in sides.chunk_by(|a, b| a.0 == b.0) {
+                block.edges.push([lower, around[0].0]);
+                block.corners.extend(around.iter().map(|(_, corner)| *corner));
+                block.ends.push(block.corners.len() as u32);
+            }
+            block.first_edge.push(block.edges.len() as u32);
+        }
+        block
+    }
+
+    /// The edges of blocks of vertices that follow each other.
+    fn concat(blocks: Vec<Self>) -> Self {
+        let total = |count: fn(&Self) -> usize| blocks.iter().map(count).sum::<usize>();
+        let mut all = Self::with_capacity(
+            total(|block| block.first_edge.len()),
+            total(|block| block.edges.len()),
+            total(|block| block.corners.len()),
+        );
+        for block in blocks {
+            let (n_edges, n_corners) = (all.edges.len() as u32, all.corners.len() as u32);
+            all.first_edge.extend(block.first_edge[1..].iter().map(|edge| n_edges + edge));
+            all.ends.extend(block.ends[1..].iter().map(|end| n_corners + end));
+            all.edges.extend(block.edges);
+            all.corners.extend(block.corners);
+        }
+        all
+    }
+}
+
 impl Topology {
     /// The largest number of faces of a mesh.
     pub const MAX_FACES: usize = (LIMIT - 1) / 3;
@@ -70,38 +148,23 @@ impl Topology {
         let at_corner = faces.as_flattened().iter().enumerate();
         let vertex_corners =
             Rows::collect(n_vertices, at_corner.map(|(c, v)| (v.index(), CornerId(c as u32))));
-        // The sides to higher vertices in the order of the edges, and the corners opposite.
-        let sides_of = |first: usize| {
-            let mut sides = Vec::new();
-            for lower in (first..n_vertices.min(first + BLOCK)).map(|v| VertexId(v as u32)) {
-                let start = sides.len();
-                for corner in vertex_corners.row(lower.index()) {
-                    let face = faces[corner.face().index()];
-                    let ends = [(corner.next(), corner.prev()), (corner.prev(), corner.next())];
-                    let ends = ends.map(|(end, opposite)| ([lower, face[end.slot()]], opposite));
-                    sides.extend(ends.into_iter().filter(|([lower, upper], _)| lower < upper));
-                }
-                sides[start..].sort_unstable_by_key(|([_, upper], corner)| (*upper, *corner));
-            }
-            sides
-        };
-        let blocks = (0..n_vertices).into_par_iter().step_by(BLOCK).map(sides_of);
-        let blocks: Vec<Vec<([VertexId; 2], CornerId)>> = blocks.collect();
-        let (mut edges, mut first_edge) = (Vec::with_capacity(faces.len() * 3 / 2), vec![0; n_vertices + 1]);
-        let (mut ends, mut corners) = (vec![0], Vec::with_capacity(3 * faces.len()));
-        let mut corner_edge = vec![EdgeId(0); 3 * faces.len()];
-        for around in blocks.iter().flat_map(|sides| sides.chunk_by(|a, b| a.0 == b.0)) {
-            for (_, corner) in around {
-                corner_edge[corner.index()] = EdgeId(edges.len() as u32);
-                corners.push(*corner);
-            }
-            edges.push(around[0].0);
-            ends.push(corners.len() as u32);
-            first_edge[around[0].0[0].index() + 1] = edges.len() as u32;
-        }
-        // Vertices without higher neighbors.
-        (0..n_vertices).for_each(|v| first_edge[v + 1] = first_edge[v + 1].max(first_edge[v]));
+        let blocks: Vec<EdgeBlock> = (0..n_vertices.div_ceil(BLOCK))
+            .into_par_iter()
+            .map(|block| {
+                let vertices = block * BLOCK..n_vertices.min((block + 1) * BLOCK);
+                EdgeBlock::of(vertices, &faces, &vertex_corners)
+            })
+            .collect();
+        let EdgeBlock { edges, first_edge, ends, corners } = EdgeBlock::concat(blocks);
         let edge_corners = Rows::from_offsets(ends, corners);
+        // Every corner is written once, so the order of the writes does not matter.
+        let corner_edge: Vec<AtomicU32> = faces.as_flattened().iter().map(|_| AtomicU32::new(0)).collect();
+        (0..edges.len()).into_par_iter().with_min_len(BLOCK).for_each(|edge| {
+            for corner in edge_corners.row(edge) {
+                corner_edge[corner.index()].store(edge as u32, Ordering::Relaxed);
+            }
+        });
+        let corner_edge = corner_edge.into_iter().map(|edge| EdgeId(edge.into_inner())).collect();
         Self { n_vertices, faces, edges, first_edge, corner_edge, vertex_corners, edge_corners }
     }
 
