@@ -14,7 +14,6 @@ use maps::LandmarkConflict;
 use mesh::{InputPoint, MeshError, PointError};
 use nmds::NmdsError;
 use retrieval::RetrievalError;
-use strum::EnumMessage;
 use surface::VertexId;
 
 /// Errors of this crate and of the crates it builds on; [`remedy`](Error::remedy) says what would help.
@@ -129,70 +128,46 @@ pub enum Error {
     Field(FieldError),
 }
 
-/// What a user can do about an [`Error`]. Messages have options in braces, as a name, or as a name and a value;
-/// [`in_words`](Self::in_words) spells them as a program does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::VariantArray, strum::EnumMessage)]
+/// What a user can do about an [`Error`], in [words](Self::in_words) of a program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::VariantArray)]
 pub enum Remedy {
     /// Keep the largest component of the mesh, or bridge its components.
-    #[strum(message = "pass {components=largest} or {components=bridge}")]
     KeepLargestOrBridge,
     /// Bridge the components of the mesh, so that none is dropped.
-    #[strum(message = "to keep all components, pass {components=bridge}")]
     BridgeComponents,
     /// Bridge the components of the mesh or close the gaps between them, so that none is dropped; or accept the loss.
-    #[strum(
-        message = "pass {components=bridge} to keep all components, or {weld=TOL} to close gaps up to TOL wide"
-    )]
     BridgeOrWeld,
     /// Embed in three dimensions.
-    #[strum(message = "leave out {dim}")]
     UseThreeDimensions,
     /// Measure distances by fast marching, which takes every surface.
-    #[strum(message = "use fast-marching")]
     UseFastMarching,
     /// Embed by NMDS, which needs a few columns of distances only.
-    #[strum(message = "use {method=nmds}, which needs only a few columns")]
     UseNystrom,
     /// Give the number of samples.
-    #[strum(message = "give {samples}, the number of samples, such as 100")]
     GiveSamples,
     /// Allow more memory.
-    #[strum(message = "raise {memory}")]
     RaiseMemory,
     /// Allow more time.
-    #[strum(message = "raise {timeout}")]
     RaiseTimeLimit,
     /// Allow larger distances.
-    #[strum(message = "choose another target, or raise {max_distance}")]
     RaiseMaxDistance,
     /// Name the classes in a label file.
-    #[strum(message = "give classes with {labels}")]
     GiveLabels,
     /// Remove or replace the shape in the index, or rename the new one.
-    #[strum(message = "rename the new shape, remove the old one, or pass {replace}")]
     ReplaceShape,
     /// Put the mesh file back, start in the folder that the index was built in, or build the index again.
-    #[strum(
-        message = "restore the file, move the index back to the place where it was built, or build the index again"
-    )]
     RestoreMesh,
     /// Build the index again.
-    #[strum(message = "restore the index from a copy, or build it again with {index build}")]
     BuildIndexAgain,
     /// Build the index again in a new file, so that every shape is described again.
-    #[strum(message = "build the index with {index build} in a new file")]
     BuildIndexAnew,
     /// Build the distance field again from its mesh.
-    #[strum(message = "build it again with {field build}")]
     BuildFieldAgain,
     /// Look at the names in the index.
-    #[strum(message = "{index list} names its shapes")]
     ListShapes,
     /// Evaluate a part of the collection, such as one shard.
-    #[strum(message = "evaluate one shard at a time")]
     EvaluateShard,
     /// Name one mesh of the archive.
-    #[strum(message = "name one of them, as ARCHIVE/NAME")]
     NameMember,
 }
 
@@ -200,13 +175,40 @@ impl Remedy {
     /// What to do, with options as `spell` writes them: a name, and the values that it may have, or none. Names of two words
     /// are those of commands.
     pub fn in_words(self, spell: impl Fn(&str, &[&str]) -> String) -> String {
-        let words = self.get_message().unwrap_or_default().split(['{', '}']).enumerate();
-        let spelled = words.map(|(i, piece)| match (i % 2, piece.split_once('=')) {
-            (0, _) => piece.to_owned(),
-            (_, Some((name, value))) => spell(name, &[value]),
-            (_, None) => spell(piece, &[]),
-        });
-        spelled.collect()
+        let named = |name: &str| spell(name, &[]);
+        let valued = |name: &str, value: &str| spell(name, &[value]);
+        let bridge = valued("components", "bridge");
+        match self {
+            Self::KeepLargestOrBridge => format!("pass {} or {bridge}", valued("components", "largest")),
+            Self::BridgeComponents => format!("to keep all components, pass {bridge}"),
+            Self::BridgeOrWeld => {
+                let weld = valued("weld", "TOL");
+                format!("pass {bridge} to keep all components, or {weld} to close gaps up to TOL wide")
+            }
+            Self::UseThreeDimensions => format!("leave out {}", named("dim")),
+            Self::UseFastMarching => "use fast-marching".to_owned(),
+            Self::UseNystrom => format!("use {}, which needs only a few columns", valued("method", "nmds")),
+            Self::GiveSamples => format!("give {}, the number of samples, such as 100", named("samples")),
+            Self::RaiseMemory => format!("raise {}", named("memory")),
+            Self::RaiseTimeLimit => format!("raise {}", named("timeout")),
+            Self::RaiseMaxDistance => format!("choose another target, or raise {}", named("max_distance")),
+            Self::GiveLabels => format!("give classes with {}", named("labels")),
+            Self::ReplaceShape => {
+                format!("rename the new shape, remove the old one, or pass {}", named("replace"))
+            }
+            Self::RestoreMesh => {
+                "restore the file, move the index back to the place where it was built, or build the index again"
+                    .to_owned()
+            }
+            Self::BuildIndexAgain => {
+                format!("restore the index from a copy, or build it again with {}", named("index build"))
+            }
+            Self::BuildIndexAnew => format!("build the index with {} in a new file", named("index build")),
+            Self::BuildFieldAgain => format!("build it again with {}", named("field build")),
+            Self::ListShapes => format!("{} names its shapes", named("index list")),
+            Self::EvaluateShard => "evaluate one shard at a time".to_owned(),
+            Self::NameMember => "name one of them, as ARCHIVE/NAME".to_owned(),
+        }
     }
 }
 
