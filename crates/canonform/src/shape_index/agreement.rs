@@ -84,6 +84,15 @@ impl Agreement {
     ) -> Result<Option<Self>, Error> {
         let shapes = drawn(shapes);
         let n_queries = shapes.len().min(QUERIES);
+        let of_class = |own: &Entry| {
+            let others =
+                shapes.iter().filter(|other| other.label == own.label && other.content != own.content);
+            others.count().min(HITS)
+        };
+        // Either shape of a pair may be the query. Forms are not aligned for too few pairs.
+        if shapes[..n_queries].iter().map(of_class).sum::<usize>() < 2 * LEAST {
+            return Ok(None);
+        }
         observer.begin("comparing classes", n_queries);
         let read = |entry: &Entry| options.prepare(&shape(&entry.id)?);
         let prepared = shapes.iter().map(read).collect::<Result<Vec<_>, Error>>()?;
@@ -95,7 +104,6 @@ impl Agreement {
         let hits = (0..n_queries).into_par_iter().map(hits).collect::<Result<Vec<_>, Error>>()?;
         let count = |kind| hits.iter().flatten().filter(|(_, is_one, _)| *is_one == kind).count();
         let [other_classes, same_class] = [false, true].map(count);
-        // Either shape of a pair may be the query.
         if same_class < 2 * LEAST || other_classes == 0 {
             return Ok(None);
         }
