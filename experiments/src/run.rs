@@ -59,15 +59,12 @@ const LEADS: [&str; 3] = ["figure4", "retrieval", "figure1"];
 /// `experiments run`.
 pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
     let known: Vec<&str> = [ALL].into_iter().chain(EXPERIMENTS.map(|(name, ..)| name)).collect();
-    let current = |name: &'_ String| {
-        let earlier = INCLUDED.iter().find(|(earlier, _)| earlier == name);
-        earlier.map_or(name.clone(), |(_, now)| (*now).to_owned())
-    };
-    let names: Vec<String> = args.names.iter().map(current).collect();
-    if let Some(name) = names.iter().find(|name| !known.contains(&name.as_str())) {
+    let current = |name| INCLUDED.iter().find(|(earlier, _)| *earlier == name).map_or(name, |(_, now)| *now);
+    let names: Vec<&str> = args.names.iter().map(|name| current(name.as_str())).collect();
+    if let Some(name) = names.iter().find(|name| !known.contains(name)) {
         bail!("there is no experiment `{name}`; choose from {}", known.join(", "));
     }
-    let is_wanted = |(name, ..): &Experiment| names.iter().any(|wanted| wanted == name || wanted == ALL);
+    let is_wanted = |(name, ..): &Experiment| names.contains(name) || names.contains(&ALL);
     let bars = Bars::new(args.quiet);
     let collection = SurfaceCollection::load(&args.source, &bars)?;
     let specimens = specimens(&collection);
