@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
-use super::schema::{Accessor, Index, Root, Sparse};
+use super::schema::{Accessor, Asset, Index, Root, Sparse, Stated};
 use crate::name::referred;
 use crate::prelude::*;
 
@@ -72,11 +72,23 @@ pub(super) fn open(bytes: &[u8]) -> Result<(Root, Option<&[u8]>), Located> {
             binary = Some(data).filter(|_| kind == b"BIN\0");
         }
     }
-    let root = serde_json::from_slice(json).map_err(|error| {
+    let unreadable = |error| {
         let fault = Fault::syntax("the JSON of glTF 2.0", there(json, &error));
         if is_text { fault.in_line(error.line()) } else { fault.at_byte(HEADER + CHUNK_HEADER) }
-    })?;
-    Ok((root, binary))
+    };
+    // Other versions lay out the rest differently, so the version comes first.
+    let stated: Stated = serde_json::from_slice(json).map_err(unreadable)?;
+    check_version(&stated.asset).whole()?;
+    Ok((serde_json::from_slice(json).map_err(unreadable)?, binary))
+}
+
+fn check_version(asset: &Asset) -> Result<(), Fault> {
+    let version = asset.min_version.as_ref().unwrap_or(&asset.version);
+    if version.split('.').next() == Some("2") {
+        return Ok(());
+    }
+    let what = format!("its version of glTF is `{}`", excerpt(version.as_bytes()));
+    Err(Fault::unsupported(what, "export it as glTF 2.0"))
 }
 
 /// The text around the place in JSON at which it cannot be read.

@@ -23,7 +23,7 @@ pub(super) use data::{check_binary_start, check_start};
 
 /// Extensions that a file may require although this reader does not know them: they change no positions.
 const HARMLESS: &str = "KHR_materials_ KHR_texture_ KHR_lights_ KHR_node_ KHR_animation_ KHR_xmp KHR_mesh_quantization \
-    EXT_texture_ EXT_materials_ EXT_lights_ MSFT_texture_";
+    KHR_techniques_ KHR_technique_ EXT_texture_ EXT_materials_ EXT_lights_ MSFT_texture_";
 
 /// Extensions that hide or multiply geometry, by the ends of their names, and what to do about each.
 const REFUSED: [(&str, &str, &str); 3] = [
@@ -64,13 +64,8 @@ pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Lo
     Ok(MeshFile { facts, ..finish(whole, limits)? })
 }
 
-/// Refuses other versions, and extensions without which positions would be wrong.
+/// Refuses extensions without which positions would be wrong.
 fn check_support(root: &Root) -> Result<(), Fault> {
-    let version = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);
-    if version.split('.').next() != Some("2") {
-        let what = format!("its version of glTF is `{}`", excerpt(version.as_bytes()));
-        return Err(Fault::unsupported(what, "export it as glTF 2.0"));
-    }
     for (name, what, remedy) in REFUSED {
         // Compression that is not required has a fallback, which is read.
         let is_fatal = root.extensions_required.iter().any(|required| required.ends_with(name))

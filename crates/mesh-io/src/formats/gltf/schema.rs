@@ -12,7 +12,6 @@ pub(super) type Index = usize;
 #[derive(Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
 pub(super) struct Root {
-    pub(super) asset: Asset,
     pub(super) scene: Option<Index>,
     pub(super) extensions_used: Vec<String>,
     pub(super) extensions_required: Vec<String>,
@@ -23,6 +22,13 @@ pub(super) struct Root {
     pub(super) nodes: Vec<Node>,
     pub(super) scenes: Vec<Scene>,
     pub(super) animations: Vec<IgnoredAny>,
+}
+
+/// What files of every version have.
+#[derive(Deserialize)]
+pub(super) struct Stated {
+    #[serde(default)]
+    pub(super) asset: Asset,
 }
 
 #[derive(Default, Deserialize)]
