@@ -88,37 +88,40 @@ pub fn repair(
     if mesh.faces.is_empty() && mesh.n_vertices() > 0 {
         return surface_of_points(mesh, options, observer);
     }
-    let budget = observer.budget();
-    let scaled: Vec<Point3<f64>> = mesh.positions.iter().map(|p| p / unit).collect();
-    let mut report = RepairReport {
+    let report = RepairReport {
         input_vertices: mesh.n_vertices(),
         input_faces: mesh.n_faces(),
         ..RepairReport::default()
     };
-    let mut merged = DisjointSets::new(mesh.n_vertices());
-    let surface = welded(mesh, &scaled, unit, options.weld, &mut merged, &mut report, &budget)?;
-    let mut parents = HashMap::new();
-    let gap = if let Weld::Within(tolerance) = options.weld { tolerance / unit } else { 0.0 };
-    let surface = match options.weld {
-        Weld::None => surface,
-        _ => without_t_junctions(mesh, &scaled, gap, surface, &mut parents, &mut report, &budget)?,
+    let mut work = Repair {
+        mesh,
+        scaled: mesh.positions.iter().map(|p| p / unit).collect(),
+        unit,
+        weld: options.weld,
+        merged: DisjointSets::new(mesh.n_vertices()),
+        parents: HashMap::new(),
+        report,
+        budget: observer.budget(),
     };
+    let surface = work.without_t_junctions()?;
     if surface.topology().n_faces() == 0 {
-        let degenerate = report.degenerate_faces + report.zero_length_faces;
+        let degenerate = work.report.degenerate_faces + work.report.zero_length_faces;
         return Err(MeshError::NoUsableFace { n_faces: mesh.n_faces(), degenerate });
     }
 
-    budget.check()?;
-    (report.coordinate_rounding, report.is_single) = coordinate_rounding(&scaled, &surface, unit);
+    work.budget.check()?;
+    (work.report.coordinate_rounding, work.report.is_single) =
+        coordinate_rounding(&work.scaled, &surface, unit);
     let components = components_of_faces(mesh.n_vertices(), surface.topology().faces());
-    report.components = components.count;
+    work.report.components = components.count;
     let kept = match options.components {
         _ if components.count == 1 => None,
         ComponentPolicy::Bridge => None,
-        ComponentPolicy::Largest => Some(largest(&scaled, surface.topology(), &components, &mut report)),
+        ComponentPolicy::Largest => Some(work.largest(surface.topology(), &components)),
         ComponentPolicy::Error => return Err(disconnected(&components)),
     };
-    let (sources, input_to_repaired) = renumbered(&mut merged, &components, kept, &mut report);
+    let (sources, input_to_repaired) = work.renumbered(&components, kept);
+    let Repair { scaled, parents, mut report, budget, .. } = work;
     let faces = surface.topology().faces();
     let kept = |face: &[VertexId; 3]| {
         let [a, b, c] = face.map(|v| input_to_repaired[v.index()]);
@@ -156,57 +159,104 @@ pub fn repair(
     Ok(Repaired { mesh: repaired, intrinsic, remap, parts, report })
 }
 
-/// The surface with faces split at the vertices that lie on their boundary edges, or beside them in a gap of at most this width.
-fn without_t_junctions(
-    mesh: &TriMesh,
-    scaled: &[Point3<f64>],
-    gap: f64,
-    mut surface: IntrinsicMesh,
-    parents: &mut HashMap<[VertexId; 3], [VertexId; 3]>,
-    report: &mut RepairReport,
-    budget: &Budget,
-) -> Result<IntrinsicMesh, Exceeded> {
-    let mut faces = Vec::new();
-    for _ in 0..MAX_PASSES {
-        budget.check()?;
-        let n_joined = t_junctions::close(scaled, gap, surface.topology(), &mut faces, parents);
-        if n_joined == 0 {
-            break;
-        }
-        report.t_junctions += n_joined;
-        surface = measured(mesh, std::mem::take(&mut faces), report);
-    }
-    Ok(surface)
+/// A mesh under repair.
+struct Repair<'a> {
+    mesh: &'a TriMesh,
+    /// Its positions in a unit that is a power of two.
+    scaled: Vec<Point3<f64>>,
+    unit: f64,
+    weld: Weld,
+    merged: DisjointSets,
+    /// For every part of a face that was split, with its vertices in order, the face that it was first a part of.
+    parents: HashMap<[VertexId; 3], [VertexId; 3]>,
+    report: RepairReport,
+    budget: Budget,
 }
 
-/// The surface of the faces, without degenerate and duplicate ones, after welding.
-fn welded(
-    mesh: &TriMesh,
-    scaled: &[Point3<f64>],
-    unit: f64,
-    policy: Weld,
-    merged: &mut DisjointSets,
-    report: &mut RepairReport,
-    budget: &Budget,
-) -> Result<IntrinsicMesh, Exceeded> {
-    let mut faces = mesh.faces.clone();
-    report.degenerate_faces = remove_degenerate(&mut faces);
-    let mut surface = measured(mesh, faces, report);
-    for _ in 0..MAX_PASSES {
-        budget.check()?;
-        let n_merged =
-            weld::weld(&mesh.positions, (scaled, unit), surface.topology(), policy, merged, report);
-        let collapsed = weld::collapse_zero_edges(&surface, unit, merged);
-        if n_merged + collapsed == 0 {
-            break;
+impl Repair<'_> {
+    /// The surface after welding, with faces split at the vertices that lie on their boundary edges.
+    fn without_t_junctions(&mut self) -> Result<IntrinsicMesh, Exceeded> {
+        let mut surface = self.welded()?;
+        for _ in 0..if self.weld == Weld::None { 0 } else { MAX_PASSES } {
+            self.budget.check()?;
+            let Some(faces) = self.close_t_junctions(surface.topology()) else { break };
+            surface = self.measured(faces);
         }
-        let mut faces = surface.into_topology().into_faces();
-        faces.iter_mut().flatten().for_each(|v| *v = VertexId(merged.find(v.0)));
-        report.collapsed_vertices += collapsed;
-        report.zero_length_faces += remove_degenerate(&mut faces);
-        surface = measured(mesh, faces, report);
+        Ok(surface)
     }
-    Ok(surface)
+
+    /// The surface of the faces, without degenerate and duplicate ones, after welding.
+    fn welded(&mut self) -> Result<IntrinsicMesh, Exceeded> {
+        let mut faces = self.mesh.faces.clone();
+        self.report.degenerate_faces = remove_degenerate(&mut faces);
+        let mut surface = self.measured(faces);
+        for _ in 0..MAX_PASSES {
+            self.budget.check()?;
+            let n_merged = self.weld(surface.topology());
+            let collapsed = self.collapse_zero_edges(&surface);
+            if n_merged + collapsed == 0 {
+                break;
+            }
+            let mut faces = surface.into_topology().into_faces();
+            faces.iter_mut().flatten().for_each(|v| *v = VertexId(self.merged.find(v.0)));
+            self.report.collapsed_vertices += collapsed;
+            self.report.zero_length_faces += remove_degenerate(&mut faces);
+            surface = self.measured(faces);
+        }
+        Ok(surface)
+    }
+
+    /// The surface of faces that are not degenerate, without duplicate faces.
+    fn measured(&mut self, faces: Vec<[VertexId; 3]>) -> IntrinsicMesh {
+        let (topology, n_duplicates) = without_duplicates(self.mesh.n_vertices(), faces);
+        self.report.duplicate_faces += n_duplicates;
+        self.mesh.measured(topology)
+    }
+
+    /// The component with the largest area, the first in case of a tie.
+    fn largest(&mut self, topology: &Topology, components: &Components) -> u32 {
+        let mut areas = vec![0.0; components.count];
+        for face in topology.faces() {
+            let [a, b, c] = face.map(|v| self.scaled[v.index()]);
+            if let Some(component) = components.of(face[0]) {
+                areas[component] += (b - a).cross(&(c - a)).norm() / 2.0;
+            }
+        }
+        let largest = (1..areas.len()).fold(0, |best, i| if areas[i] > areas[best] { i } else { best });
+        let total: f64 = areas.iter().sum();
+        self.report.dropped_components = components.count - 1;
+        self.report.dropped_area_share = if total > 0.0 { 1.0 - areas[largest] / total } else { 0.0 };
+        largest as u32
+    }
+
+    /// The vertices with a face, in the order of the input, if `kept` is given only those of that component; and for every input
+    /// vertex its number among them. Reports those that are dropped.
+    fn renumbered(
+        &mut self,
+        components: &Components,
+        kept: Option<u32>,
+    ) -> (Vec<VertexId>, Vec<Option<VertexId>>) {
+        let Self { merged, report, .. } = self;
+        let mut sources = Vec::with_capacity(merged.len());
+        let mut number = vec![None; merged.len()];
+        for v in 0..merged.len() {
+            // The lowest vertex of a merged set represents it, so it was visited before.
+            let source = merged.find(v as u32) as usize;
+            let label = components.labels[source];
+            if source != v {
+                number[v] = number[source];
+            } else if label.is_some_and(|label| kept.is_none_or(|kept| kept == label)) {
+                number[v] = Some(VertexId::from(sources.len()));
+                sources.push(VertexId::from(v));
+            }
+            if number[v].is_none() {
+                report.dropped_vertices.push(VertexId::from(v));
+                report.dropped_component_vertices += usize::from(label.is_some());
+                report.unreferenced_vertices += usize::from(label.is_none());
+            }
+        }
+        (sources, number)
+    }
 }
 
 /// The surface through the vertices of a mesh without faces, repaired. The vertex that stands for a point is its vertex.
@@ -230,13 +280,6 @@ fn surface_of_points(
     report.points = Some(found.report);
     repaired.remap = Remap::new(to_repaired, repaired.mesh.n_vertices());
     Ok(repaired)
-}
-
-/// The surface of faces that are not degenerate, over the vertices of a mesh, without duplicate faces.
-fn measured(mesh: &TriMesh, faces: Vec<[VertexId; 3]>, report: &mut RepairReport) -> IntrinsicMesh {
-    let (topology, n_duplicates) = without_duplicates(mesh.n_vertices(), faces);
-    report.duplicate_faces += n_duplicates;
-    mesh.measured(topology)
 }
 
 /// The unit of length of a mesh whose size is in the supported range.
@@ -291,54 +334,4 @@ fn disconnected(components: &Components) -> MeshError {
     let n_vertices: usize = sizes.iter().sum();
     let largest = sizes.into_iter().max().unwrap_or(0);
     MeshError::Disconnected { unreached: n_vertices - largest, n_vertices }
-}
-
-/// The component with the largest area, the first in case of a tie.
-fn largest(
-    positions: &[Point3<f64>],
-    topology: &Topology,
-    components: &Components,
-    report: &mut RepairReport,
-) -> u32 {
-    let mut areas = vec![0.0; components.count];
-    for face in topology.faces() {
-        let [a, b, c] = face.map(|v| positions[v.index()]);
-        if let Some(component) = components.of(face[0]) {
-            areas[component] += (b - a).cross(&(c - a)).norm() / 2.0;
-        }
-    }
-    let largest = (1..areas.len()).fold(0, |best, i| if areas[i] > areas[best] { i } else { best });
-    let total: f64 = areas.iter().sum();
-    report.dropped_components = components.count - 1;
-    report.dropped_area_share = if total > 0.0 { 1.0 - areas[largest] / total } else { 0.0 };
-    largest as u32
-}
-
-/// The vertices with a face, in the order of the input, if `kept` is given only those of that component; and for every input
-/// vertex its number among them. Reports those that are dropped.
-fn renumbered(
-    merged: &mut DisjointSets,
-    components: &Components,
-    kept: Option<u32>,
-    report: &mut RepairReport,
-) -> (Vec<VertexId>, Vec<Option<VertexId>>) {
-    let mut sources = Vec::with_capacity(merged.len());
-    let mut number = vec![None; merged.len()];
-    for v in 0..merged.len() {
-        // The lowest vertex of a merged set represents it, so it was visited before.
-        let source = merged.find(v as u32) as usize;
-        let label = components.labels[source];
-        if source != v {
-            number[v] = number[source];
-        } else if label.is_some_and(|label| kept.is_none_or(|kept| kept == label)) {
-            number[v] = Some(VertexId::from(sources.len()));
-            sources.push(VertexId::from(v));
-        }
-        if number[v].is_none() {
-            report.dropped_vertices.push(VertexId::from(v));
-            report.dropped_component_vertices += usize::from(label.is_some());
-            report.unreferenced_vertices += usize::from(label.is_none());
-        }
-    }
-    (sources, number)
 }

@@ -1,11 +1,10 @@
 //! Closing T-junctions: vertices that lie on an edge of the face beside them.
 
-use std::collections::HashMap;
-
 use nalgebra::Point3;
 use surface::{CornerId, EdgeId, Rows, Topology, VertexId};
 
 use super::weld::SEAM_TOLERANCE;
+use super::{Repair, Weld};
 use crate::boundary::neighbors;
 
 /// Rounding of coordinates, as a share of the farthest: many programs write six digits.
@@ -14,51 +13,44 @@ const ROUNDING: f64 = 1e-5;
 /// Vertices of more boundary edges are left alone: comparing all of them would take quadratic time.
 const MAX_BESIDE: usize = 64;
 
-/// Splits faces at the vertices that lie on one of their boundary edges, up to rounding or the width of gaps that are to be closed, and
-/// appends the parts of each to the faces; returns the number of vertices joined to an edge.
-///
-/// Such an edge and the edges beside it leave a vertex in the same direction. The chain of boundary edges from there is
-/// followed as long as it stays on the edge, so that nothing is joined to an edge that it merely touches. Where the chain has
-/// gaps itself, later passes go on. `parents` has for every part, with its vertices in order, the face that it was first a
-/// part of.
-pub(super) fn close(
-    positions: &[Point3<f64>],
-    gap: f64,
-    topology: &Topology,
-    faces: &mut Vec<[VertexId; 3]>,
-    parents: &mut HashMap<[VertexId; 3], [VertexId; 3]>,
-) -> usize {
-    let edges: Vec<EdgeId> = topology.boundary_edges().collect();
-    if edges.is_empty() {
-        return 0;
-    }
-    let boundary = Boundary { positions, gap, beside: neighbors(topology) };
-    faces.clear();
-    faces.extend(topology.faces());
-    let mut n_joined = 0;
-    for edge in edges {
-        let corner = topology.edge_corners(edge)[0];
-        let face = corner.face().index();
-        // One edge of a face at a time.
-        if faces[face] != topology.faces()[face] {
-            continue;
+impl Repair<'_> {
+    /// The faces split at the vertices that lie on one of their boundary edges, up to rounding or the width of gaps that are to be
+    /// closed; `None` if there are no such vertices.
+    ///
+    /// Such an edge and the edges beside it leave a vertex in the same direction. The chain of boundary edges from there is
+    /// followed as long as it stays on the edge, so that nothing is joined to an edge that it merely touches. Where the chain has
+    /// gaps itself, later passes go on.
+    pub(super) fn close_t_junctions(&mut self, topology: &Topology) -> Option<Vec<[VertexId; 3]>> {
+        let edges: Vec<EdgeId> = topology.boundary_edges().collect();
+        if edges.is_empty() {
+            return None;
         }
-        let inner = boundary.vertices_on(topology, corner);
-        n_joined += inner.len();
-        if !inner.is_empty() {
-            let (apex, [start, end]) = (topology.corner_vertex(corner), topology.edge_ends(corner));
-            let parent = parents.get(&VertexId::sorted(faces[face])).copied().unwrap_or(faces[face]);
-            let chain = [&[start], &inner[..], &[end]].concat();
-            let mut parts = chain.windows(2).map(|pair| [apex, pair[0], pair[1]]);
-            faces[face] = parts.next().unwrap_or(faces[face]);
-            parents.insert(VertexId::sorted(faces[face]), parent);
-            for part in parts {
-                parents.insert(VertexId::sorted(part), parent);
-                faces.push(part);
+        let gap = if let Weld::Within(tolerance) = self.weld { tolerance / self.unit } else { 0.0 };
+        let boundary = Boundary { positions: &self.scaled, gap, beside: neighbors(topology) };
+        let mut faces = topology.faces().to_vec();
+        let mut n_joined = 0;
+        for edge in edges {
+            let corner = topology.edge_corners(edge)[0];
+            let face = corner.face().index();
+            // One edge of a face at a time.
+            if faces[face] != topology.faces()[face] {
+                continue;
+            }
+            let inner = boundary.vertices_on(topology, corner);
+            n_joined += inner.len();
+            if !inner.is_empty() {
+                let (apex, [start, end]) = (topology.corner_vertex(corner), topology.edge_ends(corner));
+                let parent = self.parents.get(&VertexId::sorted(faces[face])).copied().unwrap_or(faces[face]);
+                let chain = [&[start], &inner[..], &[end]].concat();
+                let mut parts = chain.windows(2).map(|pair| [apex, pair[0], pair[1]]);
+                self.parents.extend(parts.clone().map(|part| (VertexId::sorted(part), parent)));
+                faces[face] = parts.next().unwrap_or(faces[face]);
+                faces.extend(parts);
             }
         }
+        self.report.t_junctions += n_joined;
+        (n_joined > 0).then_some(faces)
     }
-    n_joined
 }
 
 struct Boundary<'a> {

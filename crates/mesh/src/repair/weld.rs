@@ -3,10 +3,9 @@
 use std::collections::HashMap;
 
 use nalgebra::{Point3, center};
-use surface::{DisjointSets, EdgeId, IntrinsicMesh, Topology, VertexId};
+use surface::{EdgeId, IntrinsicMesh, Topology, VertexId};
 
-use super::options::Weld;
-use super::report::RepairReport;
+use super::{Repair, Weld};
 use crate::box_tree::BoxTree;
 use crate::coincidence::coincident_pairs;
 
@@ -17,38 +16,87 @@ pub(super) const SEAM_TOLERANCE: f64 = 0.02;
 /// The most candidates per boundary edge or vertex in a pass. Where more are close together, later passes go on.
 const CANDIDATES: usize = 8;
 
-/// Merges vertices according to `policy`, first those in the same position; nearby ones wait for a pass in which there
-/// are none. Returns how many were merged into another. No face is degenerate. The positions of `scaled` are those of
-/// `positions` in a `unit` that is a power of two.
-pub(super) fn weld(
-    positions: &[Point3<f64>],
-    (scaled, unit): (&[Point3<f64>], f64),
-    topology: &Topology,
-    policy: Weld,
-    merged: &mut DisjointSets,
-    report: &mut RepairReport,
-) -> usize {
-    let edges: Vec<EdgeId> = match policy {
-        Weld::None => return 0,
-        Weld::All => Vec::new(),
-        Weld::Seams | Weld::Within(_) => topology.boundary_edges().collect(),
-    };
-    let mut candidates: Vec<u32> = match policy {
-        Weld::All => (0..positions.len() as u32).collect(),
-        _ => edges.iter().flat_map(|edge| topology.edges()[edge.index()]).map(|v| v.0).collect(),
-    };
-    candidates.sort_unstable();
-    candidates.dedup();
-    let pairs = coincident_pairs(positions, candidates.iter().copied());
-    let n_coincident = pairs.into_iter().filter(|&[a, b]| merged.union(a, b)).count();
-    report.welded_vertices += n_coincident;
-    let pairs = match policy {
-        _ if n_coincident > 0 => return n_coincident,
-        Weld::Within(tolerance) => vertex_pairs(scaled, &candidates, tolerance / unit),
-        Weld::Seams => seam_pairs(scaled, topology, &edges),
-        Weld::All | Weld::None => return 0,
-    };
-    merge_near((scaled, unit), topology, pairs, merged, report)
+impl Repair<'_> {
+    /// Merges vertices according to the policy, first those in the same position; nearby ones wait for a pass in which there are
+    /// none. Returns how many were merged into another. No face is degenerate.
+    pub(super) fn weld(&mut self, topology: &Topology) -> usize {
+        let edges: Vec<EdgeId> = match self.weld {
+            Weld::None => return 0,
+            Weld::All => Vec::new(),
+            Weld::Seams | Weld::Within(_) => topology.boundary_edges().collect(),
+        };
+        let mut candidates: Vec<u32> = match self.weld {
+            Weld::All => (0..self.scaled.len() as u32).collect(),
+            _ => edges.iter().flat_map(|edge| topology.edges()[edge.index()]).map(|v| v.0).collect(),
+        };
+        candidates.sort_unstable();
+        candidates.dedup();
+        let pairs = coincident_pairs(&self.mesh.positions, candidates.iter().copied());
+        let n_coincident = pairs.into_iter().filter(|&[a, b]| self.merged.union(a, b)).count();
+        self.report.welded_vertices += n_coincident;
+        let pairs = match self.weld {
+            _ if n_coincident > 0 => return n_coincident,
+            Weld::Within(tolerance) => vertex_pairs(&self.scaled, &candidates, tolerance / self.unit),
+            Weld::Seams => seam_pairs(&self.scaled, topology, &edges),
+            Weld::All | Weld::None => return 0,
+        };
+        self.merge_near(topology, pairs)
+    }
+
+    /// Merges the nearest pairs first, unless that would merge two vertices of one edge, or vertices farther apart along an
+    /// axis than the tolerance.
+    fn merge_near(&mut self, topology: &Topology, mut pairs: Vec<Pair>) -> usize {
+        let Self { scaled, unit, merged, report, .. } = self;
+        pairs.sort_unstable_by(|a, b| a.gap.total_cmp(&b.gap).then(a.ends.cmp(&b.ends)));
+        pairs.dedup_by_key(|pair| pair.ends);
+        let (mut n_merged, mut widest) = (0, [0.0; 2]);
+        // Those of more than one vertex, by their lowest.
+        let mut clusters: HashMap<u32, Cluster> = HashMap::new();
+        let alone = |v: u32| {
+            let (at, n_corners) = (scaled[v as usize], topology.vertex_corners(VertexId(v)).len());
+            Cluster { members: vec![v], n_corners, low: at, high: at }
+        };
+        for Pair { gap, tolerance, ends } in pairs {
+            let sets = ends.map(|v| merged.find(v));
+            if sets[0] == sets[1] {
+                continue;
+            }
+            let [a, b] = sets.map(|set| clusters.remove(&set).unwrap_or_else(|| alone(set)));
+            let (low, high) = (a.low.inf(&b.low), a.high.sup(&b.high));
+            // The cluster with fewer corners is searched, which bounds the cost of all searches.
+            let (small, mut large, [own, other]) =
+                if a.n_corners < b.n_corners { (a, b, sets) } else { (b, a, [sets[1], sets[0]]) };
+            let corners = small.members.iter().flat_map(|v| topology.vertex_corners(VertexId(*v)));
+            let mut neighbors = corners.flat_map(|corner| topology.edge_ends(*corner));
+            if (high - low).max() > tolerance || neighbors.any(|v| merged.find(v.0) == other) {
+                clusters.extend([(own, small), (other, large)]);
+                continue;
+            }
+            merged.union(own, other);
+            large.members.extend(small.members);
+            let n_corners = large.n_corners + small.n_corners;
+            clusters.insert(merged.find(own), Cluster { n_corners, low, high, ..large });
+            n_merged += 1;
+            if gap >= widest[0] {
+                widest = [gap, tolerance];
+            }
+        }
+        report.near_welded_vertices += n_merged;
+        if *unit * widest[0] > report.weld_gap {
+            [report.weld_gap, report.weld_tolerance] = widest.map(|length| *unit * length);
+        }
+        n_merged
+    }
+
+    /// Merges the ends of every edge whose squared length, in units near the size of the mesh, vanishes; returns how many vertices
+    /// were merged into another.
+    ///
+    /// The faces at such an edge become degenerate and are removed. If its ends stayed apart, that would leave a slit.
+    pub(super) fn collapse_zero_edges(&mut self, surface: &IntrinsicMesh) -> usize {
+        let edges = surface.topology().edges().iter().zip(surface.edge_lengths());
+        let vanishing = edges.filter(|(_, length)| (*length / self.unit).powi(2) < f64::MIN_POSITIVE);
+        vanishing.filter(|([a, b], _)| self.merged.union(a.0, b.0)).count()
+    }
 }
 
 /// Two vertices that may be merged, the lower one first.
@@ -126,64 +174,4 @@ struct Cluster {
     /// Their bounding box.
     low: Point3<f64>,
     high: Point3<f64>,
-}
-
-/// Merges the nearest pairs first, unless that would merge two vertices of one edge, or vertices farther apart along an
-/// axis than the tolerance.
-fn merge_near(
-    (scaled, unit): (&[Point3<f64>], f64),
-    topology: &Topology,
-    mut pairs: Vec<Pair>,
-    merged: &mut DisjointSets,
-    report: &mut RepairReport,
-) -> usize {
-    pairs.sort_unstable_by(|a, b| a.gap.total_cmp(&b.gap).then(a.ends.cmp(&b.ends)));
-    pairs.dedup_by_key(|pair| pair.ends);
-    let (mut n_merged, mut widest) = (0, [0.0; 2]);
-    // Those of more than one vertex, by their lowest.
-    let mut clusters: HashMap<u32, Cluster> = HashMap::new();
-    let alone = |v: u32| {
-        let (at, n_corners) = (scaled[v as usize], topology.vertex_corners(VertexId(v)).len());
-        Cluster { members: vec![v], n_corners, low: at, high: at }
-    };
-    for Pair { gap, tolerance, ends } in pairs {
-        let sets = ends.map(|v| merged.find(v));
-        if sets[0] == sets[1] {
-            continue;
-        }
-        let [a, b] = sets.map(|set| clusters.remove(&set).unwrap_or_else(|| alone(set)));
-        let (low, high) = (a.low.inf(&b.low), a.high.sup(&b.high));
-        // The cluster with fewer corners is searched, which bounds the cost of all searches.
-        let (small, mut large, [own, other]) =
-            if a.n_corners < b.n_corners { (a, b, sets) } else { (b, a, [sets[1], sets[0]]) };
-        let corners = small.members.iter().flat_map(|v| topology.vertex_corners(VertexId(*v)));
-        let mut neighbors = corners.flat_map(|corner| topology.edge_ends(*corner));
-        if (high - low).max() > tolerance || neighbors.any(|v| merged.find(v.0) == other) {
-            clusters.extend([(own, small), (other, large)]);
-            continue;
-        }
-        merged.union(own, other);
-        large.members.extend(small.members);
-        let n_corners = large.n_corners + small.n_corners;
-        clusters.insert(merged.find(own), Cluster { n_corners, low, high, ..large });
-        n_merged += 1;
-        if gap >= widest[0] {
-            widest = [gap, tolerance];
-        }
-    }
-    report.near_welded_vertices += n_merged;
-    if unit * widest[0] > report.weld_gap {
-        [report.weld_gap, report.weld_tolerance] = widest.map(|length| unit * length);
-    }
-    n_merged
-}
-
-/// Merges the ends of every edge whose squared length, in a `unit` near the size of the mesh, vanishes; returns how many
-/// vertices were merged into another.
-///
-/// The faces at such an edge become degenerate and are removed. If its ends stayed apart, that would leave a slit.
-pub(super) fn collapse_zero_edges(surface: &IntrinsicMesh, unit: f64, merged: &mut DisjointSets) -> usize {
-    let edges = surface.topology().edges().iter().zip(surface.edge_lengths());
-    let vanishing = edges.filter(|(_, length)| (*length / unit).powi(2) < f64::MIN_POSITIVE);
-    vanishing.filter(|([a, b], _)| merged.union(a.0, b.0)).count()
 }
