@@ -33,11 +33,8 @@ use crate::rows::Rows;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Topology {
-    n_vertices: usize,
     faces: Vec<[VertexId; 3]>,
     edges: Vec<[VertexId; 2]>,
-    /// The number of edges whose lower end is below each vertex, and of all.
-    first_edge: Vec<u32>,
     /// Edge opposite each corner, indexed by corner.
     corner_edge: Vec<EdgeId>,
     vertex_corners: Rows<CornerId>,
@@ -53,30 +50,21 @@ const BLOCK: usize = 512;
 /// The edges from some successive vertices to higher ones.
 struct EdgeBlock {
     edges: Vec<[VertexId; 2]>,
-    /// Per vertex, the number of edges before its own, and at the end the number of all.
-    first_edge: Vec<u32>,
-    /// Per edge, the number of corners opposite the edges before it, and at the end that of all.
+    /// Per edge, the number of corners opposite it and the edges before it.
     ends: Vec<u32>,
     corners: Vec<CornerId>,
 }
 
 impl EdgeBlock {
-    fn with_capacity(n_vertices: usize, n_edges: usize, n_corners: usize) -> Self {
-        let mut block = Self {
-            edges: Vec::with_capacity(n_edges),
-            first_edge: Vec::with_capacity(n_vertices + 1),
-            ends: Vec::with_capacity(n_edges + 1),
-            corners: Vec::with_capacity(n_corners),
-        };
-        block.first_edge.push(0);
-        block.ends.push(0);
-        block
-    }
-
     fn of(vertices: Range<usize>, faces: &[[VertexId; 3]], vertex_corners: &Rows<CornerId>) -> Self {
         let n_corners =
             vertex_corners.range(vertices.end - 1).end - vertex_corners.range(vertices.start).start;
-        let mut block = Self::with_capacity(vertices.len(), n_corners / 2 + 1, n_corners);
+        let n_edges = n_corners / 2 + 1;
+        let mut block = Self {
+            edges: Vec::with_capacity(n_edges),
+            ends: Vec::with_capacity(n_edges),
+            corners: Vec::with_capacity(n_corners),
+        };
         // The upper ends of all sides and the corners opposite, collected without a branch, so that many faces are
         // read at once.
         let (mut sides, mut n_sides) = (vec![(VertexId(0), CornerId(0)); 2 * n_corners + 1], 0);
@@ -101,27 +89,8 @@ impl EdgeBlock {
                 block.corners.extend(around.iter().map(|(_, corner)| *corner));
                 block.ends.push(block.corners.len() as u32);
             }
-            block.first_edge.push(block.edges.len() as u32);
         }
         block
-    }
-
-    /// The edges of blocks of vertices that follow each other.
-    fn concat(blocks: Vec<Self>) -> Self {
-        let total = |count: fn(&Self) -> usize| blocks.iter().map(count).sum::<usize>();
-        let mut all = Self::with_capacity(
-            total(|block| block.first_edge.len()),
-            total(|block| block.edges.len()),
-            total(|block| block.corners.len()),
-        );
-        for block in blocks {
-            let (n_edges, n_corners) = (all.edges.len() as u32, all.corners.len() as u32);
-            all.first_edge.extend(block.first_edge[1..].iter().map(|edge| n_edges + edge));
-            all.ends.extend(block.ends[1..].iter().map(|end| n_corners + end));
-            all.edges.extend(block.edges);
-            all.corners.extend(block.corners);
-        }
-        all
     }
 }
 
@@ -155,7 +124,15 @@ impl Topology {
                 EdgeBlock::of(vertices, &faces, &vertex_corners)
             })
             .collect();
-        let EdgeBlock { edges, first_edge, ends, corners } = EdgeBlock::concat(blocks);
+        let n_edges = blocks.iter().map(|block| block.edges.len()).sum();
+        let (mut edges, mut ends) = (Vec::with_capacity(n_edges), Vec::with_capacity(n_edges + 1));
+        let mut corners = Vec::with_capacity(3 * faces.len());
+        ends.push(0);
+        for block in blocks {
+            ends.extend(block.ends.iter().map(|end| corners.len() as u32 + end));
+            edges.extend(block.edges);
+            corners.extend(block.corners);
+        }
         let edge_corners = Rows::from_offsets(ends, corners);
         // Every corner is written once, so the order of the writes does not matter.
         let corner_edge: Vec<AtomicU32> = faces.as_flattened().iter().map(|_| AtomicU32::new(0)).collect();
@@ -165,7 +142,7 @@ impl Topology {
             }
         });
         let corner_edge = corner_edge.into_iter().map(|edge| EdgeId(edge.into_inner())).collect();
-        Self { n_vertices, faces, edges, first_edge, corner_edge, vertex_corners, edge_corners }
+        Self { faces, edges, corner_edge, vertex_corners, edge_corners }
     }
 
     /// The vertices of every face, without the connectivity.
@@ -175,7 +152,7 @@ impl Topology {
 
     /// Number of vertices.
     pub fn n_vertices(&self) -> usize {
-        self.n_vertices
+        self.vertex_corners.n_rows()
     }
 
     /// Number of faces.
@@ -256,13 +233,7 @@ impl Topology {
 
     /// The edge between two vertices, if there is one.
     pub fn edge_between(&self, a: VertexId, b: VertexId) -> Option<EdgeId> {
-        let (low, high) = (a.min(b).index(), a.max(b));
-        if high.index() >= self.n_vertices {
-            return None;
-        }
-        let [start, end] = [low, low + 1].map(|v| self.first_edge[v] as usize);
-        let found = self.edges[start..end].binary_search_by_key(&high, |ends| ends[1]);
-        found.ok().map(|i| EdgeId::from(start + i))
+        self.edges.binary_search(&[a.min(b), a.max(b)]).ok().map(EdgeId::from)
     }
 }
 
