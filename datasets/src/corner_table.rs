@@ -18,6 +18,7 @@ pub(crate) struct EditableCorners {
     twin: Vec<CornerId>,
     /// One corner of each vertex, [`NO_CORNER`] once the vertex is removed.
     corner: Vec<CornerId>,
+    n_vertices: usize,
 }
 
 const NO_VERTEX: VertexId = VertexId(u32::MAX);
@@ -32,7 +33,12 @@ impl EditableCorners {
             (0..3 * faces.len()).map(|c| topology.opposite(CornerId::from(c))).collect::<Option<_>>()?;
         let corner = |v: usize| topology.vertex_corners(VertexId::from(v)).last().copied();
         let corner = (0..n_vertices).map(corner).collect::<Option<_>>()?;
-        Some(Self { vertex: faces.concat(), twin, corner })
+        Some(Self { vertex: faces.concat(), twin, corner, n_vertices })
+    }
+
+    /// The number of vertices that have not been removed.
+    pub(crate) fn n_vertices(&self) -> usize {
+        self.n_vertices
     }
 
     pub(crate) fn n_corners(&self) -> usize {
@@ -104,6 +110,7 @@ impl EditableCorners {
             self.vertex[dead.index()] = NO_VERTEX;
         }
         self.corner[u.index()] = NO_CORNER;
+        self.n_vertices -= 1;
     }
 
     /// Whether the edge opposite `c` can be flipped: its apexes are not neighbors, and its ends keep at
@@ -155,6 +162,7 @@ impl EditableCorners {
             vertex: living.iter().map(|&c| vertex_to[self.vertex[c].index()]).collect(),
             twin: living.iter().map(|&c| corner_to[self.twin[c].index()]).collect(),
             corner: self.vertices().map(|v| corner_to[self.corner[v.index()].index()]).collect(),
+            n_vertices: self.n_vertices,
         }
     }
 

@@ -67,7 +67,8 @@ fn closed_surface(
     let Some(table) = EditableCorners::new(n_raw, &raw.faces) else { return Ok(None) };
     let grain = raw.positions.par_iter().map(|&p| 1.0 + grading * (model.skeleton.grain(p) - 1.0)).collect();
     let mut surface = RestSurface { table, positions: raw.positions, grain };
-    if simplify(&mut surface, n_vertices, budget)? != n_vertices {
+    simplify(&mut surface, n_vertices, budget)?;
+    if surface.table.n_vertices() != n_vertices {
         return Ok(None);
     }
     surface.compact();

@@ -26,27 +26,24 @@ const MAX_NEIGHBORS: usize = 12;
 /// A vertex is merged into its neighbor without moving it, so that all vertices stay on the surface. An edge stays
 /// if its collapse would break the manifold or invert a triangle. Edges far shorter than those of the result are
 /// collapsed in a few sweeps, `O(m)` for the bulk, the others in the order of a queue, `O(k log k)` for the rest.
-/// Returns the number of vertices left, which exceeds `n_vertices` only if no other edge can be collapsed.
+/// More vertices are left only if no other edge can be collapsed.
 pub(crate) fn simplify(
     surface: &mut RestSurface,
     n_vertices: usize,
     budget: &Budget,
-) -> Result<usize, Exceeded> {
-    let mut n_left = surface.table.vertices().count();
+) -> Result<(), Exceeded> {
     // The cost c of the final edges: equilateral triangles cover 2 sqrt(3) c grains^2 per vertex.
     let final_cost = surface.area_in_grains() / (12f64.sqrt() * n_vertices as f64);
     for share in [1.0 / 64.0, 1.0 / 24.0, 1.0 / 10.0, 0.2] {
-        n_left = sweep(surface, final_cost * share, n_left, n_vertices, budget)?;
+        sweep(surface, final_cost * share, n_vertices, budget)?;
     }
-    while n_left > n_vertices {
-        // An edge that could not be collapsed in one round may be possible in the next.
-        let n_before = n_left;
-        n_left = collapse_by_queue(surface, n_left, n_vertices, budget)?;
-        if n_left == n_before {
-            break;
-        }
+    let mut n_before = usize::MAX;
+    // An edge that could not be collapsed in one round may be possible in the next.
+    while (n_vertices + 1..n_before).contains(&surface.table.n_vertices()) {
+        n_before = surface.table.n_vertices();
+        collapse_by_queue(surface, n_vertices, budget)?;
     }
-    Ok(n_left)
+    Ok(())
 }
 
 /// Operations that a vertex or an edge counts for in the meter of a budget.
@@ -56,19 +53,13 @@ const OPERATIONS: usize = 64;
 ///
 /// A vertex into which another was merged stays until the next sweep. Otherwise a whole region of short edges
 /// would collapse into a single vertex.
-fn sweep(
-    surface: &mut RestSurface,
-    limit: f64,
-    mut n_left: usize,
-    n_vertices: usize,
-    budget: &Budget,
-) -> Result<usize, Exceeded> {
+fn sweep(surface: &mut RestSurface, limit: f64, n_vertices: usize, budget: &Budget) -> Result<(), Exceeded> {
     let mut meter = budget.meter();
     let mut neighbors = Vec::new();
     let mut stays = vec![false; surface.positions.len()];
     for v in (0..surface.positions.len()).map(VertexId::from) {
         meter.count(OPERATIONS)?;
-        if n_left <= n_vertices {
+        if surface.table.n_vertices() <= n_vertices {
             break;
         }
         if stays[v.index()] || !surface.table.is_alive(v) {
@@ -77,30 +68,22 @@ fn sweep(
         neighbors.clear();
         neighbors.extend(surface.table.neighbors(v).map(|x| (surface.cost(v, x), x)));
         neighbors.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        for &(_, x) in neighbors.iter().take_while(|(cost, _)| *cost < limit) {
-            if surface.collapse(v, x) {
-                stays[x.index()] = true;
-                n_left -= 1;
-                break;
-            }
+        let mut short = neighbors.iter().take_while(|(cost, _)| *cost < limit);
+        if let Some((_, kept)) = short.find(|(_, x)| surface.collapse(v, *x)) {
+            stays[kept.index()] = true;
         }
     }
-    Ok(n_left)
+    Ok(())
 }
 
-fn collapse_by_queue(
-    surface: &mut RestSurface,
-    mut n_left: usize,
-    n_vertices: usize,
-    budget: &Budget,
-) -> Result<usize, Exceeded> {
+fn collapse_by_queue(surface: &mut RestSurface, n_vertices: usize, budget: &Budget) -> Result<(), Exceeded> {
     let mut meter = budget.meter();
     let mut queue = NearestFirst::default();
     for v in surface.table.vertices() {
         let above = surface.table.neighbors(v).filter(|&x| v < x);
         above.for_each(|x| queue.push(surface.cost(v, x), [v, x]));
     }
-    while n_left > n_vertices
+    while surface.table.n_vertices() > n_vertices
         && let Some((_, [u, w])) = queue.pop()
     {
         meter.count(OPERATIONS)?;
@@ -108,19 +91,15 @@ fn collapse_by_queue(
         if !(surface.table.is_alive(u) && surface.table.is_alive(w)) {
             continue;
         }
-        let kept = if surface.collapse(u, w) {
-            w
-        } else if surface.collapse(w, u) {
-            u
-        } else {
+        let ways = [[u, w], [w, u]];
+        let Some([_, kept]) = ways.into_iter().find(|[gone, kept]| surface.collapse(*gone, *kept)) else {
             continue;
         };
-        n_left -= 1;
         for x in surface.table.neighbors(kept) {
             queue.push(surface.cost(kept, x), [kept.min(x), kept.max(x)]);
         }
     }
-    Ok(n_left)
+    Ok(())
 }
 
 impl RestSurface {
