@@ -20,7 +20,6 @@ use base::{Budget, Observer};
 use surface::{IntrinsicMesh, Link, SurfacePoint};
 
 use crate::error::GeodesicError;
-use crate::flat::faces_around;
 use crate::source::Source;
 use edges::EdgeTree;
 use field::PathField;
@@ -90,11 +89,8 @@ impl<'a> PathTracer<'a> {
         observer: &dyn Observer,
     ) -> Self {
         assert_eq!(distances.len(), mesh.n_vertices(), "one distance per vertex");
-        Self {
-            field: PathField::new(mesh, sources, distances),
-            tree: OnceLock::new(),
-            budget: observer.budget(),
-        }
+        let (field, tree) = (PathField { mesh, sources, distances }, OnceLock::new());
+        Self { field, tree, budget: observer.budget() }
     }
 
     /// The shortest path from the nearest source to `target`.
@@ -107,7 +103,7 @@ impl<'a> PathTracer<'a> {
         let mesh = self.field.mesh;
         let around = Source::new(mesh, target)?;
         let target = around.point();
-        if faces_around(mesh, target).iter().any(|face| self.field.sources_within(*face).contains(&target)) {
+        if self.field.is_source(target) {
             return Ok(GeodesicPath { points: vec![target], length: 0.0 });
         }
         let distance = |field: &[f64]| {
@@ -142,7 +138,7 @@ impl<'a> PathTracer<'a> {
             // Between vertices the distances give only an upper bound.
             let (mut below, mut known, mut enough, mut link) = (f64::INFINITY, f64::INFINITY, 0.0, None);
             if let SurfacePoint::Vertex(vertex) = here {
-                if field.is_source(vertex) {
+                if field.is_source(here) {
                     return Some(steps);
                 }
                 below = field.distances[vertex.index()];

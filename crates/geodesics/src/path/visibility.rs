@@ -78,9 +78,9 @@ impl SightSearch<'_> {
             }
         }
         for source in self.field.sources_within(face) {
-            let at = flat.point(self.field.mesh, *source);
+            let at = flat.point(self.field.mesh, source);
             if before.is_none_or(|number| self.rays[number].hold(at)) {
-                self.offer(distance(at, ORIGIN), End { point: *source, at, face, before });
+                self.offer(distance(at, ORIGIN), End { point: source, at, face, before });
             }
         }
         seen.onward.iter().flatten().for_each(|rays| self.send(*rays));
