@@ -173,7 +173,8 @@ impl ColumnStore {
     pub fn rows(&self, range: std::ops::Range<usize>) -> Result<Matrix, LinalgError> {
         assert!(range.end <= self.n_rows, "rows {range:?} of {}", self.n_rows);
         let n = range.len();
-        let mut block = Matrix::zeros(n, self.n_columns);
+        let zeros = Budget::unlimited().vector(n.saturating_mul(self.n_columns))?;
+        let mut block = Matrix::from_vec(n, self.n_columns, zeros);
         if n == 0 {
             return Ok(block);
         }
@@ -192,23 +193,6 @@ impl ColumnStore {
             }
         }
         Ok(block)
-    }
-
-    /// All columns as one matrix, read into memory if they are in a file.
-    ///
-    /// # Errors
-    /// [`LinalgError::File`], [`LinalgError::Exceeded`].
-    pub fn into_matrix(self) -> Result<Matrix, LinalgError> {
-        let (n_rows, n_columns) = (self.n_rows, self.n_columns);
-        let values = match self.backing {
-            Backing::Memory(values) => values,
-            Backing::File(file) => {
-                let mut values = Budget::unlimited().vector(n_rows.saturating_mul(n_columns))?;
-                read(&mut lock(&file), 0, &mut values).map_err(LinalgError::file)?;
-                values
-            }
-        };
-        Ok(Matrix::from_vec(n_rows, n_columns, values))
     }
 }
 

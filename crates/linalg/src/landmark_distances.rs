@@ -99,7 +99,7 @@ impl LandmarkDistances {
     /// # Errors
     /// [`LinalgError::File`], [`LinalgError::Exceeded`].
     pub fn to_matrix(&self) -> Result<Matrix, LinalgError> {
-        self.columns.clone().into_matrix()
+        self.columns.rows(0..self.n_points())
     }
 
     /// The distances from landmark number `landmark` to all points.
