@@ -3,7 +3,7 @@
 //! `bench/peers.py` compares them with other programs.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use geodesics::{FirstSample, HeatOptions, Method, farthest_point_sampling};
+use geodesics::{FirstSample, HeatOptions, Method, Sampling};
 use mesh::shapes;
 use surface::{IntrinsicMesh, VertexId};
 
@@ -61,7 +61,8 @@ fn sampling(criterion: &mut Criterion) {
             ("farthest first", FirstSample::Farthest),
         ] {
             group.bench_function(BenchmarkId::new(format!("ten samples, {name}"), threads), |bencher| {
-                pool.install(|| bencher.iter(|| farthest_point_sampling(solver.as_ref(), 10, first)));
+                let sampled = || Sampling::Farthest.start(solver.as_ref(), first, 0)?.into_distances(10);
+                pool.install(|| bencher.iter(sampled));
             });
         }
     }

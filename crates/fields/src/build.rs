@@ -58,8 +58,7 @@ impl DistanceField {
         let chooser = chooser.prepare(mesh, observer)?;
         observer.begin("landmarks", options.landmarks);
         let observed = Observed { solver: chooser.as_ref(), observer };
-        let mut sampler = Sampling::Farthest.start(&observed, FirstSample::Farthest, 0)?;
-        sampler.extend_to(options.landmarks)?;
+        let sampler = Sampling::Farthest.start(&observed, FirstSample::Farthest, 0)?;
         let approximate = sampler.into_distances(options.landmarks)?;
         let mut landmarks = approximate.landmarks().to_vec();
 

@@ -61,7 +61,7 @@ pub use heat::{HeatMethod, HeatOptions};
 pub use method::Method;
 pub use observed::Observed;
 pub use path::{GeodesicPath, PathTracer};
-pub use sampling::{FirstSample, Sampler, Sampling, SpreadSamples, farthest_point_sampling};
+pub use sampling::{FirstSample, Sampler, Sampling, SpreadSamples};
 pub use solver::DistanceSolver;
 pub use source::Source;
 pub use surface::SurfacePoint;

@@ -392,9 +392,7 @@ impl Surface {
                 Some(vertex) => FirstSample::Vertex(inner.repaired_vertex(VertexId(vertex))?),
             };
             observer.begin("samples", n);
-            let mut sampler = Sampling::Farthest.start(solver, first, 0)?;
-            sampler.extend_to(n)?;
-            let distances = sampler.into_distances(n)?;
+            let distances = Sampling::Farthest.start(solver, first, 0)?.into_distances(n)?;
             let input = |&v: &usize| i64::from(inner.input_vertex(VertexId::from(v)).0);
             Ok(distances.landmarks().iter().map(input).collect::<Vec<_>>())
         })?;

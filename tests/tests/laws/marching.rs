@@ -3,8 +3,8 @@
 use canonform::Exceeded;
 use datasets::Family;
 use geodesics::{
-    DistanceSolver, FastMarching, FastMarchingOptions, FirstSample, Method, ObtuseTreatment, Source,
-    SurfacePoint, Update, farthest_point_sampling,
+    DistanceSolver, FastMarching, FastMarchingOptions, FirstSample, Method, ObtuseTreatment, Sampling,
+    Source, SurfacePoint, Update,
 };
 use mesh::{TriMesh, shapes};
 use nalgebra::Point3;
@@ -163,9 +163,12 @@ fn pruning_changes_nothing(name: &str, surface: &IntrinsicMesh, n: usize) {
     let solver = FastMarching::new(surface, FastMarchingOptions::default(), &());
     let [unpruned, careless] = [false, true].map(|is_careless| Other { solver: &solver, is_careless });
     for first in [FirstSample::Farthest, FirstSample::Vertex(VertexId(7))] {
-        let full = farthest_point_sampling(&unpruned, n, first).unwrap();
+        let sampled = |solver: &dyn DistanceSolver| {
+            Sampling::Farthest.start(solver, first, 0).unwrap().into_distances(n).unwrap()
+        };
+        let full = sampled(&unpruned);
         for ahead in [&solver as &dyn DistanceSolver, &careless] {
-            let pruned = testkit::on_threads(2, || farthest_point_sampling(ahead, n, first)).unwrap();
+            let pruned = testkit::on_threads(2, || sampled(ahead));
             assert_eq!(pruned.landmarks(), full.landmarks(), "{name} from {first:?}");
             assert_eq!(pruned.to_matrix(), full.to_matrix(), "{name} from {first:?}");
         }

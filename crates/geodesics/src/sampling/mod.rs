@@ -5,7 +5,7 @@ mod spread;
 
 use surface::VertexId;
 
-pub use sampler::{Sampler, farthest_point_sampling};
+pub use sampler::Sampler;
 pub use spread::SpreadSamples;
 
 /// A rule for choosing landmarks. Ties go to the lowest vertex, and the seed determines what is drawn at random, for any

@@ -242,11 +242,12 @@ impl Sampler<'_> {
         landmark_distances(self.landmarks[..n].to_vec(), self.store.first(n))
     }
 
-    /// The same as [`distances`](Self::distances), without a copy of what is in memory.
+    /// The distances from the first `n` landmarks, choosing those that are missing, without a copy of what is in memory.
     ///
     /// # Errors
-    /// As [`distances`](Self::distances).
+    /// As [`extend_to`](Self::extend_to) and [`distances`](Self::distances).
     pub fn into_distances(mut self, n: usize) -> Result<LandmarkDistances, GeodesicError> {
+        self.extend_to(n)?;
         self.landmarks.truncate(n);
         self.store.truncate(n);
         landmark_distances(self.landmarks, self.store)
@@ -264,20 +265,6 @@ impl Sampler<'_> {
         self.store = store;
         Ok(())
     }
-}
-
-/// The distances from `n` landmarks chosen by [`Sampling::Farthest`].
-///
-/// # Errors
-/// As [`Sampling::start`], and [`GeodesicError::NoSamples`] if `n` is zero.
-pub fn farthest_point_sampling(
-    solver: &dyn DistanceSolver,
-    n: usize,
-    first: FirstSample,
-) -> Result<LandmarkDistances, GeodesicError> {
-    let mut sampler = Sampling::Farthest.start(solver, first, 0)?;
-    sampler.extend_to(n)?;
-    sampler.into_distances(n)
 }
 
 /// The distances from some vertices, all finite.

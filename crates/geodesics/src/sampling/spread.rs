@@ -24,11 +24,12 @@ impl SpreadSamples {
     /// front then stops where other samples are nearer; and `O(p n)`.
     ///
     /// ```
-    /// use canonform_geodesics::{FirstSample, Method, SpreadSamples, farthest_point_sampling};
+    /// use canonform_geodesics::{FirstSample, Method, Sampling, SpreadSamples};
     /// use mesh::shapes;
     ///
     /// let solver = Method::default().prepare(shapes::icosphere(3).intrinsic(), &())?;
-    /// let few = farthest_point_sampling(solver.as_ref(), 10, FirstSample::default())?;
+    /// let sampler = Sampling::Farthest.start(solver.as_ref(), FirstSample::default(), 0)?;
+    /// let few = sampler.into_distances(10)?;
     /// let many = SpreadSamples::new(solver.as_ref(), &few, 100)?;
     /// assert_eq!(many.samples.len(), 100);
     /// assert!(many.samples.starts_with(few.landmarks()));
@@ -75,14 +76,16 @@ impl SpreadSamples {
 mod tests {
     use super::*;
     use crate::dijkstra::Dijkstra;
-    use crate::sampling::{FirstSample, farthest_point_sampling};
+    use crate::sampling::{FirstSample, Sampling};
     use mesh::shapes::icosphere;
 
     #[test]
     fn the_samples_are_those_of_farthest_point_sampling() {
         let solver = Dijkstra::new(&icosphere(3).intrinsic(), &());
-        let few = farthest_point_sampling(&solver, 5, FirstSample::default()).unwrap();
-        let all = farthest_point_sampling(&solver, 60, FirstSample::default()).unwrap();
+        let [few, all] = [5, 60].map(|n| {
+            let sampler = Sampling::Farthest.start(&solver, FirstSample::default(), 0).unwrap();
+            sampler.into_distances(n).unwrap()
+        });
         let spread = SpreadSamples::new(&solver, &few, 60).unwrap();
         assert_eq!(spread.samples, all.landmarks());
         // At least the landmarks and at most all vertices.
