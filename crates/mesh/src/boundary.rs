@@ -1,8 +1,6 @@
 //! The boundary of a surface.
 
-use std::collections::BTreeMap;
-
-use surface::{DisjointSets, IntrinsicMesh, Rows, Topology, VertexId};
+use surface::{Components, IntrinsicMesh, Rows, Topology, VertexId};
 
 /// The other ends of the boundary edges at every vertex.
 pub(crate) fn neighbors(topology: &Topology) -> Rows<VertexId> {
@@ -43,22 +41,14 @@ pub(crate) fn simple_boundaries(topology: &Topology) -> Vec<Vec<VertexId>> {
 /// The vertices of each boundary, and its length. Boundaries that touch count as one.
 pub(crate) fn boundaries(mesh: &IntrinsicMesh) -> Vec<(Vec<VertexId>, f64)> {
     let topology = mesh.topology();
-    let mut joined = DisjointSets::new(mesh.n_vertices());
-    for edge in topology.boundary_edges() {
-        let [a, b] = topology.edges()[edge.index()];
-        joined.union(a.0, b.0);
+    let edges = || topology.boundary_edges().map(|edge| (edge, topology.edges()[edge.index()]));
+    let joined = Components::joined(mesh.n_vertices(), edges().map(|(_, ends)| ends));
+    let mut found = vec![(Vec::new(), 0.0); joined.count];
+    for v in (0..mesh.n_vertices()).map(VertexId::from) {
+        joined.of(v).into_iter().for_each(|boundary| found[boundary].0.push(v));
     }
-    let mut found: BTreeMap<u32, (Vec<VertexId>, f64)> = BTreeMap::new();
-    for edge in topology.boundary_edges() {
-        let ends = topology.edges()[edge.index()];
-        let (vertices, sum) = found.entry(joined.find(ends[0].0)).or_default();
-        vertices.extend(ends);
-        *sum += mesh.length(edge);
-    }
-    let mut found: Vec<_> = found.into_values().collect();
-    for (vertices, _) in &mut found {
-        vertices.sort_unstable();
-        vertices.dedup();
+    for (edge, [end, _]) in edges() {
+        joined.of(end).into_iter().for_each(|boundary| found[boundary].1 += mesh.length(edge));
     }
     found
 }

@@ -13,37 +13,30 @@ pub struct Components {
     pub labels: Vec<Option<u32>>,
 }
 
-/// The components of any faces, degenerate ones included, in linear time; vertices without faces are in none. Faces
-/// that share only a vertex are connected, as paths along edges can pass through it.
+/// The components of any faces, degenerate ones included; vertices without faces are in none. Faces that share only a vertex are
+/// connected, as paths along edges can pass through it.
 pub fn components_of_faces(n_vertices: usize, faces: &[[VertexId; 3]]) -> Components {
-    let mut sets = DisjointSets::new(n_vertices);
-    let mut has_face = vec![false; n_vertices];
-    for [a, b, c] in faces {
-        sets.union(a.0, b.0);
-        sets.union(b.0, c.0);
-        for v in [a, b, c] {
-            has_face[v.index()] = true;
-        }
-    }
-    Components::of_sets(sets, |v| has_face[v])
+    Components::joined(n_vertices, faces.iter().flat_map(|&[a, b, c]| [[a, b], [b, c]]))
 }
 
 /// The components along edges and links; a vertex without either is a component of its own.
 pub fn components_with_links(mesh: &IntrinsicMesh) -> Components {
-    let mut sets = DisjointSets::new(mesh.n_vertices());
-    let links = mesh.links().iter().map(|link| &link.ends);
-    for [a, b] in mesh.topology().edges().iter().chain(links) {
-        sets.union(a.0, b.0);
-    }
-    Components::of_sets(sets, |_| true)
+    let vertices = (0..mesh.n_vertices()).map(|v| [VertexId::from(v); 2]);
+    let links = mesh.links().iter().map(|link| link.ends);
+    let edges = mesh.topology().edges().iter().copied();
+    Components::joined(mesh.n_vertices(), vertices.chain(edges).chain(links))
 }
 
 impl Components {
-    /// Numbers the sets of the vertices that are members.
-    fn of_sets(mut sets: DisjointSets, is_member: impl Fn(usize) -> bool) -> Self {
-        let mut count = 0;
-        let mut labels: Vec<Option<u32>> = vec![None; sets.len()];
-        for v in (0..sets.len()).filter(|v| is_member(*v)) {
+    /// The components along edges, of which each has two ends, in linear time; other vertices are in none.
+    pub fn joined(n_vertices: usize, edges: impl Iterator<Item = [VertexId; 2]>) -> Self {
+        let (mut sets, mut is_member) = (DisjointSets::new(n_vertices), vec![false; n_vertices]);
+        for ends in edges {
+            sets.union(ends[0].0, ends[1].0);
+            ends.into_iter().for_each(|v| is_member[v.index()] = true);
+        }
+        let (mut count, mut labels) = (0, vec![None; n_vertices]);
+        for v in (0..n_vertices).filter(|v| is_member[*v]) {
             // The root is the lowest member of its set, so it is numbered first.
             let root = sets.find(v as u32) as usize;
             if root == v {

@@ -30,10 +30,4 @@ impl DisjointSets {
         self.parent[a.max(b) as usize] = a.min(b);
         a != b
     }
-
-    /// Number of members.
-    #[expect(clippy::len_without_is_empty, reason = "the number of members is fixed")]
-    pub fn len(&self) -> usize {
-        self.parent.len()
-    }
 }

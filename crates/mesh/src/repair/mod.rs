@@ -236,10 +236,10 @@ impl Repair<'_> {
         components: &Components,
         kept: Option<u32>,
     ) -> (Vec<VertexId>, Vec<Option<VertexId>>) {
-        let Self { merged, report, .. } = self;
-        let mut sources = Vec::with_capacity(merged.len());
-        let mut number = vec![None; merged.len()];
-        for v in 0..merged.len() {
+        let Self { mesh, merged, report, .. } = self;
+        let mut sources = Vec::with_capacity(mesh.n_vertices());
+        let mut number = vec![None; mesh.n_vertices()];
+        for v in 0..mesh.n_vertices() {
             // The lowest vertex of a merged set represents it, so it was visited before.
             let source = merged.find(v as u32) as usize;
             let label = components.labels[source];
