@@ -1,5 +1,7 @@
 //! Vertices that several parts of a surface share.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use nalgebra::Point3;
 use surface::{CornerId, DisjointSets, EdgeId, Frontier, OneRing, Topology, VertexId, components_of_faces};
 
@@ -39,44 +41,47 @@ pub(super) fn cut(mesh: &TriMesh, topology: &Topology, detour: f64) -> CutSurfac
             _ => true,
         })
         .collect();
-    let mut split = with_copies(mesh, &faces, &origins, &separate);
+    let split = with_copies(mesh, &faces, &origins, &separate);
     // And where its parts meet nearby; a vertex that was pulled out of its surface is not far for that reason.
-    restore_positions(&mut split, n);
-    let (graph, mut front) = (split.mesh.edge_graph(), Frontier::default());
-    let copy = |i: usize| VertexId::from(n + i);
-    let is_far = |(i, origin): (usize, &VertexId)| {
-        graph.between(&mut front, &[*origin], &[copy(i)], detour).is_infinite()
-    };
-    let mut far: Vec<bool> = split.remap.origins().iter().enumerate().map(is_far).collect();
+    let mut far: Vec<bool> = detours(&split, n, detour).map(f64::is_infinite).collect();
     if far.iter().filter(|far| **far).count() > MOST {
         far.fill(false);
     }
-    let mut cut = with_copies(mesh, &split.mesh.faces, split.remap.origins(), &far);
-    restore_positions(&mut cut, n);
-    let shortcuts = shortcuts(&cut, n);
+    let cut = with_copies(mesh, &split.mesh.faces, split.remap.origins(), &far);
+    let shortcut = |(&vertex, detour)| Shortcut { kind: ShortcutKind::Pinch, vertex, girth: 0.0, detour };
+    let shortcuts = cut.remap.origins().iter().zip(detours(&cut, n, f64::INFINITY)).map(shortcut).collect();
     CutSurface { cut, shortcuts }
 }
 
-/// The mesh with those copies of vertices that are `kept`; in `faces`, copies follow the vertices of the mesh.
+/// How far every copy, after the first `n` vertices, is from its origin along edges; infinite beyond the radius.
+fn detours(split: &Remapped, n: usize, radius: f64) -> impl Iterator<Item = f64> {
+    let (graph, mut front) = (split.mesh.edge_graph(), Frontier::default());
+    let copies = (n..).map(VertexId::from).zip(split.remap.origins());
+    copies.map(move |(copy, origin)| graph.between(&mut front, &[copy], &[*origin], radius))
+}
+
+/// The mesh with those copies of vertices that are `kept`; in `faces`, copies follow the vertices of the mesh. Vertices of the cut that
+/// stick out of the surface move back into it.
 fn with_copies(mesh: &TriMesh, faces: &[[VertexId; 3]], origins: &[VertexId], kept: &[bool]) -> Remapped {
     let n = mesh.n_vertices();
     let mut left = Vec::new();
-    let number: Vec<VertexId> = origins
-        .iter()
-        .zip(kept)
-        .map(|(&origin, kept)| {
-            if !kept {
-                return origin;
-            }
-            left.push(origin);
-            VertexId::from(n + left.len() - 1)
-        })
-        .collect();
+    let number = |(&origin, &kept): (&VertexId, &bool)| {
+        left.extend(kept.then_some(origin));
+        if kept { VertexId::from(n + left.len() - 1) } else { origin }
+    };
+    let number: Vec<VertexId> = origins.iter().zip(kept).map(number).collect();
     let renumbered = |v: VertexId| if v.index() < n { v } else { number[v.index() - n] };
     let copies = left.iter().map(|origin| mesh.positions[origin.index()]);
     let positions = mesh.positions.iter().copied().chain(copies).collect();
     let faces = faces.iter().map(|face| face.map(renumbered)).collect();
-    Remapped::extended(TriMesh { positions, faces }, left)
+    let mut split = TriMesh { positions, faces };
+    let topology = split.topology();
+    let cut: BTreeSet<VertexId> =
+        left.iter().copied().chain((n..split.n_vertices()).map(VertexId::from)).collect();
+    let moved: Vec<(VertexId, Point3<f64>)> =
+        cut.into_iter().filter_map(|v| Some((v, flattened(&split, &topology, v, PULLED)?))).collect();
+    moved.into_iter().for_each(|(v, position)| split.positions[v.index()] = position);
+    Remapped::extended(split, left)
 }
 
 /// The corners at a vertex, by the parts of the surface that have only this vertex, or welded edges, in common.
@@ -95,16 +100,11 @@ fn sheets(topology: &Topology, ring: &mut OneRing, v: VertexId) -> Vec<Vec<Corne
             sets.union(*crack.get_or_insert(i), i);
         }
     }
-    let mut sheets: Vec<(u32, Vec<CornerId>)> = Vec::new();
+    let mut sheets: BTreeMap<u32, Vec<CornerId>> = BTreeMap::new();
     for (i, fan) in (0..).zip(ring.fans()) {
-        let set = sets.find(i);
-        let corners = fan.corners.iter().map(|corner| corner.corner);
-        match sheets.iter_mut().find(|(known, _)| *known == set) {
-            Some((_, sheet)) => sheet.extend(corners),
-            None => sheets.push((set, corners.collect())),
-        }
+        sheets.entry(sets.find(i)).or_default().extend(fan.corners.iter().map(|corner| corner.corner));
     }
-    sheets.into_iter().map(|(_, sheet)| sheet).collect()
+    sheets.into_values().collect()
 }
 
 /// Whether an edge has four faces, two in each direction.
@@ -112,27 +112,4 @@ fn is_weld(topology: &Topology, edge: EdgeId) -> bool {
     let corners = topology.edge_corners(edge);
     let forward = |c: &&CornerId| topology.corner_vertex(c.next()) == topology.edges()[edge.index()][0];
     corners.len() == 4 && corners.iter().filter(forward).count() == 2
-}
-
-fn shortcuts(cut: &Remapped, n: usize) -> Vec<Shortcut> {
-    let (graph, mut front) = (cut.mesh.edge_graph(), Frontier::default());
-    let copies = cut.remap.origins().iter().enumerate().map(|(i, &vertex)| {
-        let detour = graph.between(&mut front, &[VertexId::from(n + i)], &[vertex], f64::INFINITY);
-        Shortcut { kind: ShortcutKind::Pinch, vertex, girth: 0.0, detour }
-    });
-    copies.collect()
-}
-
-/// Moves vertices of cuts back into their surfaces if they stick out.
-fn restore_positions(split: &mut Remapped, n: usize) {
-    let mut cut: Vec<VertexId> = (0..split.remap.origins().len()).map(|i| VertexId::from(n + i)).collect();
-    cut.extend(split.remap.origins());
-    cut.sort_unstable();
-    cut.dedup();
-    let topology = split.mesh.topology();
-    let moved: Vec<(VertexId, Point3<f64>)> =
-        cut.into_iter().filter_map(|v| Some((v, flattened(&split.mesh, &topology, v, PULLED)?))).collect();
-    for (v, position) in moved {
-        split.mesh.positions[v.index()] = position;
-    }
 }
