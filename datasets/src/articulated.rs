@@ -281,7 +281,7 @@ mod tests {
     use surface::{EdgeGraph, IntrinsicMesh, Topology, VertexId};
 
     use super::*;
-    use crate::implicit::{Blob, BodyPart, ImplicitBody};
+    use crate::implicit::{Blob, BodyPart};
     use crate::simplify::RestSurface;
 
     /// Relative changes of path lengths between two poses of one triangulation, in ascending order.
@@ -336,10 +336,9 @@ mod tests {
     #[test]
     fn a_body_with_two_components_is_an_error() {
         let mut model = Family::Cat.model();
-        model.body = ImplicitBody::new(vec![
-            BodyPart::added(vec![Blob::ball([0.0, 0.0, 0.0], 10.0)]),
-            BodyPart::added(vec![Blob::ball([0.0, 50.0, 0.0], 10.0)]),
-        ]);
+        model.body.parts = [0.0, 50.0]
+            .map(|y| BodyPart::new(false, vec![Blob::new([[0.0, y, 0.0, 10.0]; 2], None, 0.0)], 0.0))
+            .into();
         let options = ArticulatedOptions::default();
         let stream = |number, purpose| Stream::new(1, 0, number, purpose);
         let error = bent(&model, "cat", [0, 3], &options, stream, &Budget::unlimited()).unwrap_err();

@@ -235,11 +235,11 @@ mod tests {
         let mut blobs = Vec::new();
         let mut random = base::SplitMix(1);
         for _ in 0..200 {
-            blobs.push(Blob::ball([(); 3].map(|()| 5.0 * random.uniform()), 0.7));
+            let [x, y, z] = [(); 3].map(|()| 5.0 * random.uniform());
+            blobs.push(Blob::new([[x, y, z, 0.7]; 2], None, 0.0));
         }
-        let raw =
-            extract(&ImplicitBody::new(vec![BodyPart::added(blobs)]), lattice(0.6), &Budget::unlimited())
-                .unwrap();
+        let body = ImplicitBody { parts: vec![BodyPart::new(false, blobs, 0.0)], is_symmetric: true };
+        let raw = extract(&body, lattice(0.6), &Budget::unlimited()).unwrap();
         assert!(raw.faces.len() > 1000);
         let report = mesh::validate(&raw);
         let defects = [report.n_boundary_edges, report.non_manifold_edges, report.non_manifold_vertices];

@@ -22,7 +22,7 @@ pub(crate) struct Blob {
 }
 
 /// Precomputed values for the distance to a round cone.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 struct ConeAxis {
     start: Vector3<f64>,
     direction: Vector3<f64>,
@@ -35,61 +35,23 @@ struct ConeAxis {
 }
 
 impl Blob {
-    /// The hull of the ball of radius `ra` around `a` and that of radius `rb` around `b`.
-    pub(crate) fn cone(a: [f64; 3], ra: f64, b: [f64; 3], rb: f64) -> Self {
-        let mut blob = Self {
-            ends: [a.into(), b.into()],
-            radii: [ra, rb],
-            flattening: None,
-            blend: 0.0,
-            axis: ConeAxis::default(),
-        };
-        blob.prepare();
-        blob
-    }
-
-    /// The ball of radius `r` around `a`.
-    pub(crate) fn ball(a: [f64; 3], r: f64) -> Self {
-        Self::cone(a, r, a, r)
-    }
-
-    /// Squeezes the blob to `factor` (below one) of its thickness along `direction`.
-    pub(crate) fn flat(mut self, direction: [f64; 3], factor: f64) -> Self {
-        self.flattening = Some((Vector3::from(direction).normalize(), factor));
-        self.prepare();
-        self
-    }
-
-    /// Sets the blending radius of the union with the blobs before it in the part.
-    pub(crate) fn blend(mut self, reach: f64) -> Self {
-        self.blend = reach;
-        self
-    }
-
-    fn prepare(&mut self) {
-        let [a, b] = self.ends.map(|p| self.stretch(p.coords));
-        let [ra, rb] = self.radii;
+    /// The hull of two balls, given by center and radius, and the blending radius of its union with the blobs before it in the part.
+    /// Flattening squeezes it to a factor below one of its thickness along a direction.
+    pub(crate) fn new(balls: [[f64; 4]; 2], flattening: Option<([f64; 3], f64)>, blend: f64) -> Self {
+        let flattening = flattening.map(|(direction, factor)| (Vector3::from(direction).normalize(), factor));
+        let (ends, [ra, rb]) = (balls.map(|[x, y, z, _]| Point3::new(x, y, z)), balls.map(|ball| ball[3]));
+        let [a, b] = ends.map(|p| stretched(p.coords, flattening));
         let length = (b - a).norm();
         // If one ball contains the other, only the larger one counts.
-        let (start, direction, length, taper) = if length <= (ra - rb).abs() {
-            (if ra >= rb { a } else { b }, Vector3::zeros(), 0.0, 0.0)
+        let (start, direction, length, taper, radii) = if length <= (ra - rb).abs() {
+            (if ra >= rb { a } else { b }, Vector3::zeros(), 0.0, 0.0, [ra.max(rb); 2])
         } else {
-            (a, (b - a) / length, length, (ra - rb) / length)
+            (a, (b - a) / length, length, (ra - rb) / length, [ra, rb])
         };
-        if length == 0.0 {
-            self.radii = [ra.max(rb); 2];
-        }
         let slope = taper / (1.0 - taper * taper).sqrt();
-        let scale = self.flattening.map_or(1.0, |(_, factor)| factor);
-        self.axis = ConeAxis { start, direction, length, taper, slope, scale };
-    }
-
-    /// Stretches space such that the flattened blob becomes a true round cone.
-    fn stretch(&self, p: Vector3<f64>) -> Vector3<f64> {
-        match self.flattening {
-            None => p,
-            Some((direction, factor)) => p + direction * ((1.0 / factor - 1.0) * direction.dot(&p)),
-        }
+        let scale = flattening.map_or(1.0, |(_, factor)| factor);
+        let axis = ConeAxis { start, direction, length, taper, slope, scale };
+        Self { ends, radii, flattening, blend, axis }
     }
 
     /// The value, a lower bound of the distance to the blob that is exact unless the blob is flattened, and its gradient.
@@ -99,7 +61,7 @@ impl Blob {
     /// projection of `p`, where `rho` is the distance of `p` from the axis.
     fn sample(&self, p: Point3<f64>) -> ImplicitSample {
         let axis = &self.axis;
-        let q = self.stretch(p.coords) - axis.start;
+        let q = stretched(p.coords, self.flattening) - axis.start;
         let along = q.dot(&axis.direction);
         let rho = (q.norm_squared() - along * along).max(0.0).sqrt();
         let foot = (along - rho * axis.slope).clamp(0.0, axis.length);
@@ -110,7 +72,15 @@ impl Blob {
             return (value, Vector3::zeros());
         }
         // The stretch is symmetric: the chain rule needs no transpose.
-        (value, self.stretch(away / distance) * axis.scale)
+        (value, stretched(away / distance, self.flattening) * axis.scale)
+    }
+}
+
+/// Stretches space such that a flattened blob becomes a true round cone.
+fn stretched(p: Vector3<f64>, flattening: Option<(Vector3<f64>, f64)>) -> Vector3<f64> {
+    match flattening {
+        None => p,
+        Some((direction, factor)) => p + direction * ((1.0 / factor - 1.0) * direction.dot(&p)),
     }
 }
 
@@ -131,18 +101,8 @@ pub(crate) struct BodyPart {
 }
 
 impl BodyPart {
-    /// A part that is added to the body.
-    pub(crate) fn added(blobs: Vec<Blob>) -> Self {
-        Self::new(false, blobs)
-    }
-
-    /// Sets the blending radius of the union with the parts before it.
-    pub(crate) fn blend(self, reach: f64) -> Self {
-        Self { blend: reach, ..self }
-    }
-
-    /// A part that is added, or that `carves`: it is subtracted from the body so far.
-    pub(crate) fn new(carves: bool, blobs: Vec<Blob>) -> Self {
+    /// A part that is added, or that `carves`: it is subtracted from the body so far; and the blending radius of that.
+    pub(crate) fn new(carves: bool, blobs: Vec<Blob>, blend: f64) -> Self {
         let ends = || blobs.iter().flat_map(|b| b.ends);
         let n = (2 * blobs.len()).max(1) as f64;
         let center = Point3::from(ends().fold(Vector3::zeros(), |sum, p| sum + p.coords) / n);
@@ -150,7 +110,7 @@ impl BodyPart {
         let radius = blobs.iter().map(reach).fold(0.0, f64::max);
         let scale = blobs.iter().map(|b| b.axis.scale).fold(1.0, f64::min);
         let slack = blobs.iter().map(|b| 0.25 * b.blend).sum();
-        Self { blobs, carves, blend: 0.0, center, radius, scale, slack }
+        Self { blobs, carves, blend, center, radius, scale, slack }
     }
 
     fn sample(&self, p: Point3<f64>) -> ImplicitSample {
@@ -190,22 +150,12 @@ fn negated(s: ImplicitSample) -> ImplicitSample {
 /// A whole body.
 #[derive(Debug, Clone)]
 pub(crate) struct ImplicitBody {
-    parts: Vec<BodyPart>,
+    pub(crate) parts: Vec<BodyPart>,
     /// Whether the body is symmetric under `x -> -x`. Its parts then describe the half `x >= 0`.
-    is_symmetric: bool,
+    pub(crate) is_symmetric: bool,
 }
 
 impl ImplicitBody {
-    /// A symmetric body, of which the parts describe the half `x >= 0`.
-    pub(crate) fn new(parts: Vec<BodyPart>) -> Self {
-        Self { parts, is_symmetric: true }
-    }
-
-    /// A body of which the parts describe everything.
-    pub(crate) fn whole(parts: Vec<BodyPart>) -> Self {
-        Self { parts, is_symmetric: false }
-    }
-
     /// The point of the described half that has the same value.
     fn folded(&self, p: Point3<f64>) -> Point3<f64> {
         if self.is_symmetric { Point3::new(p.x.abs(), p.y, p.z) } else { p }
@@ -267,15 +217,16 @@ mod tests {
 
     #[test]
     fn the_gradient_is_the_derivative_and_at_most_one() {
-        let body = ImplicitBody::new(vec![
-            BodyPart::added(vec![Blob::cone([0.0, 0.0, 0.0], 3.0, [0.0, 1.0, 9.0], 1.5)]),
-            BodyPart::added(vec![
-                Blob::ball([4.0, 0.0, 0.0], 2.0).flat([0.0, 1.0, 1.0], 0.4),
-                Blob::cone([5.0, 0.0, 0.0], 1.0, [9.0, 0.0, 1.0], 0.5).blend(0.7),
-            ])
-            .blend(1.0),
-            BodyPart::new(true, vec![Blob::ball([0.0, -3.0, 3.0], 1.5)]).blend(0.5),
-        ]);
+        let ball = |x, y, z, r| [[x, y, z, r]; 2];
+        let head = vec![
+            Blob::new(ball(4.0, 0.0, 0.0, 2.0), Some(([0.0, 1.0, 1.0], 0.4)), 0.0),
+            Blob::new([[5.0, 0.0, 0.0, 1.0], [9.0, 0.0, 1.0, 0.5]], None, 0.7),
+        ];
+        let trunk = vec![Blob::new([[0.0, 0.0, 0.0, 3.0], [0.0, 1.0, 9.0, 1.5]], None, 0.0)];
+        let mouth = vec![Blob::new(ball(0.0, -3.0, 3.0, 1.5), None, 0.0)];
+        let parts = [(false, trunk, 0.0), (false, head, 1.0), (true, mouth, 0.5)];
+        let parts = parts.map(|(carves, blobs, blend)| BodyPart::new(carves, blobs, blend)).into();
+        let body = ImplicitBody { parts, is_symmetric: true };
         let h = 1e-6;
         for i in 0..1000 {
             let p = Point3::from([1, 10, 100].map(|place| f64::from(i / place % 10) * 2.3 - 10.1));

@@ -108,7 +108,7 @@ impl BodyModel {
     /// If the text is no description: it is one of ours, which tests read.
     pub(crate) fn read(text: &str) -> Self {
         let all: BodyDescription = toml::from_str(text).unwrap_or_else(|fault| panic!("a body: {fault}"));
-        let body = ImplicitBody::new(all.parts.iter().map(PartData::part).collect());
+        let body = ImplicitBody { parts: all.parts.iter().map(PartData::part).collect(), is_symmetric: true };
         let (skeleton, names) = all.skeleton();
         let poses = all.poses.iter().map(|pose| pose.pose(&skeleton, &names)).collect();
         Self { body, skeleton, poses, genus: 0, area: all.area, spacing: all.spacing }
@@ -131,10 +131,10 @@ impl BodyDescription {
                 |&[x, y, z, radius, grain]: &[f64; 5]| BoneNode { at: [x, y, z].into(), radius, grain };
             let nodes = data.nodes.iter().map(node).collect();
             let joints = data.joints.iter().map(JointData::joint).collect();
-            let chains = match parent.filter(|_| data.pair) {
-                Some(parent) => skeleton.pair(parent, nodes, joints).to_vec(),
-                None => vec![skeleton.chain(parent, nodes, joints)],
-            };
+            let mut chains = vec![skeleton.chain(parent, nodes, joints)];
+            if data.pair {
+                chains.push(skeleton.mirror(chains[0]));
+            }
             for (joint, JointData { name, .. }) in data.joints.iter().enumerate() {
                 let ids = chains.iter().map(|&chain| JointId { chain, joint }).collect();
                 name.iter().for_each(|name| drop(names.joints.insert(name, Vec::clone(&ids))));
@@ -148,18 +148,15 @@ impl BodyDescription {
 impl PartData {
     fn part(&self) -> BodyPart {
         let blobs = self.blobs.iter().flat_map(BlobData::blobs).collect();
-        BodyPart::new(self.carved, blobs).blend(self.blend)
+        BodyPart::new(self.carved, blobs, self.blend)
     }
 }
 
 impl BlobData {
     fn blobs(&self) -> impl Iterator<Item = Blob> {
         let last = self.axis.len() - 1;
-        (0..last.max(1)).map(move |i| {
-            let [[ax, ay, az, ra], [bx, by, bz, rb]] = [self.axis[i], self.axis[last.min(i + 1)]];
-            let cone = Blob::cone([ax, ay, az], ra, [bx, by, bz], rb).blend(self.blend);
-            self.flat.map_or(cone.clone(), |(direction, factor)| cone.flat(direction, factor))
-        })
+        (0..last.max(1))
+            .map(move |i| Blob::new([self.axis[i], self.axis[last.min(i + 1)]], self.flat, self.blend))
     }
 }
 
@@ -178,17 +175,17 @@ impl JointData {
 
 impl PoseData {
     fn pose(&self, skeleton: &Skeleton, names: &JointNames<'_>) -> Pose {
-        let mut set = Vec::new();
+        let mut pose = Pose::rest(skeleton);
+        pose.root = self.root;
         for (name, sides) in &self.chains {
             for (&chain, turns) in names.chains[name.as_str()].iter().zip(sides) {
-                set.extend(turns.iter().enumerate().map(|(joint, turn)| (JointId { chain, joint }, *turn)));
+                turns.iter().enumerate().for_each(|(joint, turn)| pose.set(JointId { chain, joint }, *turn));
             }
         }
         for (name, sides) in &self.turns {
-            set.extend(names.joints[name.as_str()].iter().copied().zip(sides.iter().copied().cycle()));
+            let joints = names.joints[name.as_str()].iter().zip(sides.iter().cycle());
+            joints.for_each(|(id, turn)| pose.set(*id, *turn));
         }
-        let mut rest = Pose::rest(skeleton);
-        rest.root = self.root;
-        set.into_iter().fold(rest, |pose, (id, turn)| pose.set(id, turn))
+        pose
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Point3, Vector3};
 
-use crate::skeleton::{BodySide, Chain, JointId, Skeleton};
+use crate::skeleton::{Chain, JointId, Skeleton};
 use crate::stream::Stream;
 use crate::trig::rotation;
 
@@ -26,9 +26,8 @@ impl Pose {
     }
 
     /// Sets one joint.
-    pub(crate) fn set(mut self, id: JointId, turn: JointTurn) -> Self {
+    pub(crate) fn set(&mut self, id: JointId, turn: JointTurn) {
         self.turns[id.chain][id.joint] = turn;
-        self
     }
 
     /// A random variation: every turn is scaled by up to 15 %, the play of every joint is added, and half of
@@ -51,7 +50,7 @@ impl Pose {
         pose.root = flip(self.root);
         let mut c = 0;
         while c < skeleton.chains.len() {
-            let paired = skeleton.chains.get(c + 1).is_some_and(|next| next.side == BodySide::Right);
+            let paired = skeleton.chains.get(c + 1).is_some_and(|next| next.is_mirrored);
             if paired {
                 pose.turns.swap(c, c + 1);
                 c += 2;
@@ -73,8 +72,8 @@ const VARIATION: [f64; 2] = [0.07, 0.16];
 pub(crate) fn random_build(skeleton: &Skeleton, stream: &mut Stream) -> Vec<[f64; 2]> {
     let mut factors: Vec<[f64; 2]> = Vec::with_capacity(skeleton.chains.len());
     for chain in &skeleton.chains {
-        let drawn = match (chain.side, factors.last()) {
-            (BodySide::Right, Some(left)) => *left,
+        let drawn = match factors.last() {
+            Some(left) if chain.is_mirrored => *left,
             _ => VARIATION.map(|range| 1.0 + stream.uniform(-range, range)),
         };
         factors.push(drawn);
@@ -185,10 +184,7 @@ fn interpolate(motions: &[Motion], fraction: f64) -> Motion {
 /// The rotation at arc length `s` is that of the base, followed by the turn of every joint times the share of the
 /// joint's interval before `s`. The axis is the integral of the rotated rest axis, which keeps its length exactly.
 fn bend(chain: &Chain, turns: &[JointTurn], base: Motion) -> Vec<Motion> {
-    let mirror = match chain.side {
-        BodySide::Left => 1.0,
-        BodySide::Right => -1.0,
-    };
+    let mirror = if chain.is_mirrored { -1.0 } else { 1.0 };
     let reflect = Matrix3::from_diagonal(&Vector3::new(mirror, 1.0, 1.0));
     let rotation_at = |arc: f64| {
         chain.joints.iter().zip(turns).fold(base.rotation, |product, (joint, [x, y, z])| {

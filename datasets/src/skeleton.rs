@@ -47,7 +47,7 @@ pub(crate) struct Chain {
     pub(crate) arcs: Vec<f64>,
     pub(crate) joints: Vec<Joint>,
     /// Whether it is the mirror image, under `x -> -x`, of the chain for which its joints were described.
-    pub(crate) side: BodySide,
+    pub(crate) is_mirrored: bool,
 }
 
 impl Chain {
@@ -62,14 +62,6 @@ impl Chain {
         let t = (arc - self.arcs[i]) / (self.arcs[i + 1] - self.arcs[i]);
         (i, t.clamp(0.0, 1.0))
     }
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum BodySide {
-    /// As described: in the middle, or at `x > 0`.
-    Left,
-    /// Mirrored.
-    Right,
 }
 
 /// All chains of a body, parents first.
@@ -101,25 +93,16 @@ impl Skeleton {
             arcs.push(arcs[arcs.len() - 1] + (pair[1].at - pair[0].at).norm());
         }
         let parent = parent.map(|(chain, node)| (chain, self.chains[chain].arcs[node]));
-        self.chains.push(Chain { parent, nodes, arcs, joints, side: BodySide::Left });
+        self.chains.push(Chain { parent, nodes, arcs, joints, is_mirrored: false });
         self.chains.len() - 1
     }
 
-    /// Adds a chain and its mirror image.
-    pub(crate) fn pair(
-        &mut self,
-        parent: (usize, usize),
-        nodes: Vec<BoneNode>,
-        joints: Vec<Joint>,
-    ) -> [usize; 2] {
-        let left = self.chain(Some(parent), nodes, joints);
-        let mut mirrored = self.chains[left].clone();
-        for node in &mut mirrored.nodes {
-            node.at.x = -node.at.x;
-        }
-        mirrored.side = BodySide::Right;
+    /// Adds the mirror image of the last chain.
+    pub(crate) fn mirror(&mut self, chain: usize) -> usize {
+        let mut mirrored = Chain { is_mirrored: true, ..self.chains[chain].clone() };
+        mirrored.nodes.iter_mut().for_each(|node| node.at.x = -node.at.x);
         self.chains.push(mirrored);
-        [left, left + 1]
+        self.chains.len() - 1
     }
 
     /// The membership of `p` in each chain.

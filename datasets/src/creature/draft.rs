@@ -121,10 +121,10 @@ impl Draft {
         let (u, v) = (limb.direction, normal.cross(&limb.direction).normalize());
         let at = |i: usize| {
             let (sin, cos) = sin_cos(2.0 * PI * (i % N_SIDES) as f64 / N_SIDES as f64);
-            (center + (u * cos + v * sin) * hole).coords.into()
+            ball(center + (u * cos + v * sin) * hole, tube)
         };
-        let sides = (0..N_SIDES).map(|i| Blob::cone(at(i), tube, at(i + 1), tube)).collect();
-        self.skin(BodyPart::added(sides).blend(BLEND * tube), tube);
+        let sides = (0..N_SIDES).map(|i| Blob::new([at(i), at(i + 1)], None, 0.0)).collect();
+        self.skin(BodyPart::new(false, sides, BLEND * tube), tube);
         self.chain(root, &[start[0], near, center, near + limb.direction * bones.length], &bones)
     }
 
@@ -154,20 +154,20 @@ impl Draft {
 
     fn tube(&mut self, axis: &[Point3<f64>], limb: &Limb) {
         let radii = radii(axis.len(), limb);
-        let flat = |blob: Blob| match limb.flattening {
-            Some((direction, factor)) => blob.flat(direction, factor),
-            None => blob,
-        };
-        let at = |i: usize| axis[i].coords.into();
-        let cone = |i: usize| flat(Blob::cone(at(i), radii[i], at(i + 1), radii[i + 1]));
+        let at = |i: usize| ball(axis[i], radii[i]);
+        let cone = |i: usize| Blob::new([at(i), at(i + 1)], limb.flattening, 0.0);
         let mut blobs: Vec<Blob> = (0..axis.len() - 1).map(cone).collect();
         if let Some(radius) = limb.knob {
-            blobs.push(Blob::ball(at(axis.len() - 1), radius).blend(0.5 * limb.radii[1]));
+            blobs.push(Blob::new([ball(axis[axis.len() - 1], radius); 2], None, 0.5 * limb.radii[1]));
         }
         let squeezed = limb.flattening.map_or(1.0, |(_, factor)| factor);
         let finest = limb.radii[0].min(limb.radii[1]) * squeezed;
-        self.skin(BodyPart::added(blobs).blend(BLEND * limb.radii[0]), finest);
+        self.skin(BodyPart::new(false, blobs, BLEND * limb.radii[0]), finest);
     }
+}
+
+fn ball(at: Point3<f64>, radius: f64) -> [f64; 4] {
+    [at.x, at.y, at.z, radius]
 }
 
 /// The nodes of a limb from `start`, of which the first bone is longer by `buried`.

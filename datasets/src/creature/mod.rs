@@ -154,7 +154,7 @@ fn model(family: usize, options: &CreatureOptions, budget: &Budget) -> Result<Bo
 /// The model of a body with random poses; `None` if its limbs touch at rest.
 fn measured(draft: Draft, stream: &mut Stream, budget: &Budget) -> Result<Option<BodyModel>, DatasetError> {
     let Draft { skeleton, parts, genus: n_handles, finest: Some(finest) } = draft else { return Ok(None) };
-    let body = ImplicitBody::whole(parts);
+    let body = ImplicitBody { parts, is_symmetric: false };
     let spacing = SPACING * finest;
     let lattice = Lattice { rotation: Matrix3::identity(), shift: Vector3::repeat(0.37), spacing };
     let raw = extract(&body, lattice, budget)?;
@@ -186,7 +186,7 @@ fn random_pose(skeleton: &Skeleton, stream: &mut Stream) -> Pose {
         for (j, joint) in chain.joints.iter().enumerate() {
             let [x, y, z] = joint.play.map(|play| play / PLAY);
             let [a, b] = side.map(|side| side + stream.uniform(-0.4, 0.4));
-            pose = pose.set(JointId { chain: c, joint: j }, [a * x, stream.uniform(-y, y), b * z]);
+            pose.set(JointId { chain: c, joint: j }, [a * x, stream.uniform(-y, y), b * z]);
         }
     }
     pose

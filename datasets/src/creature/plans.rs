@@ -263,18 +263,17 @@ impl SkinPlan {
             let [first, last] = self.turn;
             let (sin, cos) = sin_cos(first.to_radians() + (last - first).to_radians() * i as f64 / n);
             let names = names.with(&[("i", i as f64), ("sin", sin), ("cos", cos)], &self.numbers);
-            let [x, y, z, radius] = names.values(at);
-            ([x, y, z], radius)
+            names.values(at)
         };
         let cone = |i: usize| {
-            let [(a, ra), (b, rb)] = match &self.from {
+            let balls = match &self.from {
                 Some(from) => [point(i, from), point(i, &self.at)],
                 None => [point(i, &self.at), point(i + 1, &self.at)],
             };
-            Blob::cone(a, ra, b, rb).blend(self.join)
+            Blob::new(balls, None, self.join)
         };
         let cones = (0..n as usize).map(cone).collect();
-        BodyPart::new(self.carved, cones).blend(names.value(&self.blend))
+        BodyPart::new(self.carved, cones, names.value(&self.blend))
     }
 }
 
