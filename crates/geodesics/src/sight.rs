@@ -65,7 +65,7 @@ impl Rays {
         facing.map(move |facing| {
             let (face, third) = (facing.face(), topology.corner_vertex(*facing));
             let [(left, at_left), (right, at_right)] = self.gate;
-            let edges = topology.corner_edges(*facing);
+            let edges = [facing.prev(), facing.next()].map(|third| topology.opposite_edge(third));
             let [to_left, to_right] =
                 if topology.edges()[edges[0].index()].contains(&left) { edges } else { [edges[1], edges[0]] };
             let lengths = [self.edge, to_left, to_right].map(|edge| mesh.length(edge));

@@ -198,12 +198,6 @@ impl Topology {
         [corner.next(), corner.prev()].map(|end| self.corner_vertex(end))
     }
 
-    /// The edges from a corner to the vertices in the next and in the previous corner of its face.
-    #[inline]
-    pub fn corner_edges(&self, corner: CornerId) -> [EdgeId; 2] {
-        [corner.prev(), corner.next()].map(|third| self.opposite_edge(third))
-    }
-
     /// The corner of a face at one of its vertices; `None` for other vertices.
     pub fn corner_at(&self, face: FaceId, vertex: VertexId) -> Option<CornerId> {
         face.corners().into_iter().find(|corner| self.corner_vertex(*corner) == vertex)

@@ -49,14 +49,7 @@ pub fn log_map(
     let mut scratch = ExactScratch::<Direction>::default();
     let (unit, budget) = (surface.faces.unit, observer.budget());
     let sources = (std::slice::from_ref(&source), &plane);
-    let front = propagation::run(
-        &surface,
-        &mut scratch,
-        max_distance / unit,
-        sources,
-        surface.max_windows(),
-        &budget,
-    )?;
+    let front = propagation::run(&surface, &mut scratch, max_distance, sources, &budget)?;
     let vector = |vertex: &u32| {
         let distance = front.distance(*vertex) * unit;
         let angle = match front.arrival(*vertex).1 {

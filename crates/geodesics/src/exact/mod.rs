@@ -116,14 +116,7 @@ impl DistanceSolver for Exact {
         assert_eq!(out.len(), self.n_vertices(), "one distance per vertex");
         let unit = self.surface.faces.unit;
         self.scratch.with(|scratch| {
-            let front = propagation::run(
-                &self.surface,
-                scratch,
-                max_distance / unit,
-                (sources, &()),
-                self.surface.max_windows(),
-                &self.budget,
-            )?;
+            let front = propagation::run(&self.surface, scratch, max_distance, (sources, &()), &self.budget)?;
             for (distance, vertex) in out.iter_mut().zip(&self.surface.new_vertices) {
                 *distance = within(front.distance(*vertex) * unit, max_distance);
             }

@@ -78,6 +78,8 @@ pub(super) struct PreparedSurface {
     pub(super) links: EdgeGraph,
     /// How many faces a window may cross in a row around one vertex.
     pub(super) max_turn: i32,
+    /// How many windows a run may propagate.
+    pub(super) max_windows: usize,
     /// The new number of every vertex and face. The corners of a face keep their order, or have that of the face it repeats.
     pub(super) new_vertices: Vec<u32>,
     pub(super) new_faces: Vec<u32>,
@@ -91,12 +93,8 @@ impl PreparedSurface {
         let links = EdgeGraph::new(mesh.n_vertices(), mesh.links().iter().copied());
         // A shortest path crosses no face twice.
         let max_turn = i32::try_from(fans.max_valence()).unwrap_or(i32::MAX);
-        Self { faces, fans, links, max_turn, new_vertices, new_faces }
-    }
-
-    /// How many windows a run may propagate.
-    pub(super) fn max_windows(&self) -> usize {
-        WINDOWS_PER_FACE.saturating_mul(self.faces.all.len())
+        let max_windows = WINDOWS_PER_FACE.saturating_mul(faces.all.len());
+        Self { faces, fans, links, max_turn, max_windows, new_vertices, new_faces }
     }
 
     pub(super) fn n_vertices(&self) -> usize {

@@ -31,7 +31,7 @@ const EDGE_SLACK: f64 = 1e-13;
 /// Operations that a window counts for in the meter of a budget.
 const OPERATIONS: usize = 16;
 
-/// Finds the distances of all vertices within `max_distance` of the nearest source, with at most so many windows.
+/// Finds the distances, in units of the surface, of all vertices within `max_distance`, in mesh units, of the nearest source.
 ///
 /// # Errors
 /// [`Exceeded`]; windows have their share of the memory of the budget.
@@ -40,13 +40,12 @@ pub(super) fn run<'a, D: Bearing>(
     scratch: &'a mut ExactScratch<D>,
     max_distance: f64,
     (sources, around): (&[Source], &D::Source),
-    max_windows: usize,
     limits: &Budget,
 ) -> Result<&'a WindowFront<D>, Exceeded> {
     let ExactScratch { front, arrived, left, right } = scratch;
     front.reset(surface.n_vertices(), 3 * surface.faces.all.len(), limits);
-    let (steps_left, max_distance) = (Some(max_windows), max_distance * (1.0 + LIMIT_SLACK));
-    let meter = limits.meter();
+    let max_distance = max_distance / surface.faces.unit * (1.0 + LIMIT_SLACK);
+    let (steps_left, meter) = (Some(surface.max_windows), limits.meter());
     let mut propagation =
         Propagation { surface, around, front, steps_left, left, right, max_distance, meter };
     sources.iter().for_each(|source| propagation.start_at(source));
@@ -59,7 +58,7 @@ pub(super) fn run<'a, D: Bearing>(
         limits.check()?;
         // Without the windows beyond, distances may be too long.
         if propagation.steps_left.is_none() {
-            return Err(Exceeded::Steps { limit: max_windows });
+            return Err(Exceeded::Steps { limit: surface.max_windows });
         }
         if !propagation.relax_edges() {
             break;
@@ -274,12 +273,13 @@ mod tests {
 
     #[test]
     fn a_run_that_lacks_windows_is_an_error() {
-        let surface = PreparedSurface::new(&shapes::torus(12, 8, 2.0, 0.7).intrinsic());
+        let mut surface = PreparedSurface::new(&shapes::torus(12, 8, 2.0, 0.7).intrinsic());
         let source = [Source::vertex(VertexId(5))];
-        let solve = |most| {
+        let mut solve = |most| {
+            surface.max_windows = most;
             let mut scratch = ExactScratch::<()>::default();
             let limits = Budget::unlimited();
-            let front = run(&surface, &mut scratch, f64::INFINITY, (&source, &()), most, &limits)?;
+            let front = run(&surface, &mut scratch, f64::INFINITY, (&source, &()), &limits)?;
             Ok::<Vec<f64>, Exceeded>((0..96).map(|v| front.distance(v)).collect())
         };
         let n_missing =
