@@ -29,12 +29,8 @@ impl Default for Finish {
 
 impl Finish {
     fn wants(self, pair: &PairDistance) -> bool {
-        match self {
-            Self::Never => false,
-            Self::Beyond(share) => {
-                pair.kind == PairKind::Estimated && pair.upper - pair.lower > share * pair.lower
-            }
-        }
+        let Self::Beyond(share) = self else { return false };
+        pair.kind == PairKind::Estimated && pair.upper - pair.lower > share * pair.lower
     }
 }
 
@@ -77,16 +73,6 @@ impl PairDistance {
     }
 }
 
-/// A pair that is to be finished: its place among the answers and its vertices on the repaired mesh.
-#[derive(Debug, Clone, Copy)]
-struct Unfinished {
-    place: usize,
-    source: VertexId,
-    target: VertexId,
-    /// The upper end of its interval.
-    upper: f64,
-}
-
 impl DistanceField {
     /// The distance of two vertices of the input, estimated, in well below a microsecond.
     ///
@@ -118,25 +104,24 @@ impl DistanceField {
         let answers = pairs.par_iter().with_min_len(1024).map(|[a, b]| self.pair(*a, *b));
         let mut answers = answers.collect::<Result<Vec<_>, FieldError>>()?;
         let open = answers.iter().enumerate().filter(|(_, answer)| finish.wants(answer));
-        let mut unfinished: Vec<Unfinished> = open
-            .filter_map(|(place, answer)| {
-                let [a, b] = [self.remap.to_new(answer.a)?, self.remap.to_new(answer.b)?];
-                Some(Unfinished { place, source: a.min(b), target: a.max(b), upper: answer.upper })
-            })
-            .collect();
         // From the lower vertex, so that both directions of a pair give the same number.
-        unfinished.sort_by_key(|pair| (pair.source, pair.place));
-        let groups: Vec<&[Unfinished]> = unfinished.chunk_by(|a, b| a.source == b.source).collect();
+        let from_lower = |(place, answer): (usize, &PairDistance)| {
+            let [a, b] = [self.remap.to_new(answer.a)?, self.remap.to_new(answer.b)?];
+            Some((a.min(b), place, a.max(b)))
+        };
+        let mut unfinished: Vec<(VertexId, usize, VertexId)> = open.filter_map(from_lower).collect();
+        unfinished.sort_unstable();
+        let groups: Vec<_> = unfinished.chunk_by(|a, b| a.0 == b.0).collect();
         observer.begin("near pairs", groups.len());
         let finished = groups.par_iter().map_init(Vec::new, |distances, group| {
-            let radius = group.iter().fold(0.0, |radius: f64, pair| radius.max(pair.upper));
-            self.propagate(group[0].source, radius, distances, observer)?;
-            if group.iter().any(|pair| distances[pair.target.index()].is_infinite()) {
+            let radius = group.iter().map(|(_, place, _)| answers[*place].upper).fold(0.0, f64::max);
+            self.propagate(group[0].0, radius, distances, observer)?;
+            if group.iter().any(|(.., target)| distances[target.index()].is_infinite()) {
                 // The error of the columns was larger than stated.
-                self.propagate(group[0].source, f64::INFINITY, distances, observer)?;
+                self.propagate(group[0].0, f64::INFINITY, distances, observer)?;
             }
             observer.step();
-            Ok(group.iter().map(|pair| (pair.place, distances[pair.target.index()])).collect::<Vec<_>>())
+            Ok(group.iter().map(|(_, place, to)| (*place, distances[to.index()])).collect::<Vec<_>>())
         });
         for (place, distance) in finished.collect::<Result<Vec<_>, FieldError>>()?.into_iter().flatten() {
             answers[place] = PairDistance::exact(pairs[place], distance);
