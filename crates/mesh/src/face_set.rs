@@ -13,22 +13,16 @@ use crate::tri_mesh::TriMesh;
 /// # Errors
 /// [`MeshError::TooLarge`], [`MeshError::VertexOutOfRange`] and [`MeshError::NonFinite`].
 pub fn check_input(mesh: &TriMesh) -> Result<(), MeshError> {
-    let n_vertices = mesh.n_vertices();
-    check_counts(n_vertices, mesh.n_faces())?;
+    let (n_vertices, n_faces) = (mesh.n_vertices(), mesh.n_faces());
+    if n_vertices > Topology::MAX_VERTICES || n_faces > Topology::MAX_FACES {
+        return Err(MeshError::TooLarge { n_vertices, n_faces });
+    }
     for (face, corners) in mesh.faces.iter().enumerate() {
         if let Some(&vertex) = corners.iter().find(|v| v.index() >= n_vertices) {
             return Err(MeshError::VertexOutOfRange { face, vertex, n_vertices });
         }
     }
     check_finite(&mesh.positions)
-}
-
-/// Returns an error if there are more vertices or faces than a mesh may have.
-fn check_counts(n_vertices: usize, n_faces: usize) -> Result<(), MeshError> {
-    match n_vertices > Topology::MAX_VERTICES || n_faces > Topology::MAX_FACES {
-        true => Err(MeshError::TooLarge { n_vertices, n_faces }),
-        false => Ok(()),
-    }
 }
 
 /// Checks coordinates.

@@ -28,19 +28,13 @@ impl FanCorner {
     /// The corner of the same face opposite the first side. The last side ends at the vertex in it.
     #[inline]
     pub fn opposite_first(self) -> CornerId {
-        match self.winding {
-            Winding::Forward => self.corner.prev(),
-            Winding::Backward => self.corner.next(),
-        }
+        if self.winding == Winding::Forward { self.corner.prev() } else { self.corner.next() }
     }
 
     /// The corner of the same face opposite the last side. The first side ends at the vertex in it.
     #[inline]
     pub fn opposite_last(self) -> CornerId {
-        match self.winding {
-            Winding::Forward => self.corner.next(),
-            Winding::Backward => self.corner.prev(),
-        }
+        if self.winding == Winding::Forward { self.corner.next() } else { self.corner.prev() }
     }
 }
 
