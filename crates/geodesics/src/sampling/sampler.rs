@@ -170,12 +170,8 @@ impl Sampler<'_> {
         let batch = if self.store.is_in_file() { rayon::current_num_threads() } else { BATCH };
         for landmarks in landmarks.chunks(batch) {
             let columns = measured(self.solver, landmarks)?;
-            let slots = self.store.grow(landmarks.len(), &self.solver.budget())?;
-            for ((landmark, column), slot) in landmarks.iter().zip(columns.column_iter()).zip(slots) {
-                slot.fill(|place| {
-                    place.copy_from_slice(column.as_slice());
-                    Ok(())
-                })?;
+            for (landmark, column) in landmarks.iter().zip(columns.column_iter()) {
+                self.store.push(column.as_slice())?;
                 self.landmarks.push(*landmark);
                 self.rule.note(*landmark, self.landmarks.len(), column.as_slice());
             }
