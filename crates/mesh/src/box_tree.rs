@@ -53,13 +53,11 @@ impl BoxTree {
 
     /// The `k` points nearest to a position, or all if there are fewer, as squared distances and numbers in ascending order.
     pub(crate) fn nearest(&self, at: &Point3<f64>, k: usize) -> Vec<(f64, u32)> {
-        let mut found = Vec::with_capacity(k);
-        self.nearest_within(at, f64::INFINITY, k, |_| false, |_| false, &mut found);
-        found
+        self.nearest_within(at, f64::INFINITY, k, |_| false, |_| false)
     }
 
-    /// Replaces `found` by the `k` points nearest to a position within a radius, which is squared, as squared distances and
-    /// numbers in ascending order. `skips` excludes points, `prunes` nodes by their index.
+    /// The `k` points nearest to a position within a radius, which is squared, as squared distances and numbers in ascending
+    /// order. `skips` excludes points, `prunes` nodes by their index.
     pub(crate) fn nearest_within(
         &self,
         at: &Point3<f64>,
@@ -67,10 +65,8 @@ impl BoxTree {
         k: usize,
         skips: impl Fn(u32) -> bool,
         prunes: impl Fn(usize) -> bool,
-        found: &mut Vec<(f64, u32)>,
-    ) {
-        found.clear();
-        let mut pending = vec![0];
+    ) -> Vec<(f64, u32)> {
+        let (mut found, mut pending) = (Vec::<(f64, u32)>::with_capacity(k), vec![0]);
         while let Some(index) = pending.pop() {
             let node = &self.nodes[index];
             let gap = node.sq_gap_to(at);
@@ -99,6 +95,7 @@ impl BoxTree {
                 }
             }
         }
+        found
     }
 }
 

@@ -93,15 +93,15 @@ fn near_links(
     let boundary: Vec<u32> = (0..positions.len() as u32).filter(|&v| edges[v as usize].1 > 0).collect();
     let mut tree = GroupTree::new(boundary.iter().copied(), positions);
     tree.assign_groups(|v| labels[v as usize]);
-    let (mut links, mut found) = (Vec::new(), Vec::new());
+    let mut links = Vec::new();
     for (i, &v) in boundary.iter().enumerate() {
         if i % BATCH == 0 {
             budget.check()?;
         }
         let (sum, count) = edges[v as usize];
         let radius = REACH * sum / f64::from(count);
-        tree.nearest_outside(&positions[v as usize], labels[v as usize], radius * radius, &mut found);
-        links.extend(found.iter().map(|&(_, other)| link(positions, [v.min(other), v.max(other)])));
+        let found = tree.nearest_outside(&positions[v as usize], labels[v as usize], radius * radius);
+        links.extend(found.map(|(_, other)| link(positions, [v.min(other), v.max(other)])));
     }
     Ok(links)
 }
@@ -148,24 +148,22 @@ impl GroupTree {
     }
 
     /// The nearest vertex of another group than `own` within a radius, and its squared distance.
-    fn nearest_outside(&self, at: &Point3<f64>, own: u32, sq_radius: f64, found: &mut Vec<(f64, u32)>) {
+    fn nearest_outside(&self, at: &Point3<f64>, own: u32, sq_radius: f64) -> Option<(f64, u32)> {
         let skips = |other: u32| self.groups[other as usize] == own;
         let prunes = |node: usize| self.node_groups[node] == own;
-        self.boxes.nearest_within(at, sq_radius, 1, skips, prunes, found);
+        self.boxes.nearest_within(at, sq_radius, 1, skips, prunes).pop()
     }
 
     /// The shortest link from every group to another.
     fn nearest_of_groups(&self, n_groups: usize, budget: &Budget) -> Result<Vec<Candidate>, Exceeded> {
         let mut nearest = vec![NONE; n_groups];
-        let mut found = Vec::new();
         for (i, (position, id)) in self.boxes.items.iter().enumerate() {
             if i % BATCH == 0 {
                 budget.check()?;
             }
             let own = self.groups[*id as usize];
             let sq_radius = f64::from_bits(nearest[own as usize].0);
-            self.nearest_outside(position, own, sq_radius, &mut found);
-            for &(sq_length, other) in &found {
+            if let Some((sq_length, other)) = self.nearest_outside(position, own, sq_radius) {
                 let candidate = (sq_length.to_bits(), [other.min(*id), other.max(*id)]);
                 for group in [own, self.groups[other as usize]] {
                     nearest[group as usize] = nearest[group as usize].min(candidate);

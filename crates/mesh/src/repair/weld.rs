@@ -116,13 +116,12 @@ impl Pair {
 /// The pairs of boundary vertices within a tolerance.
 fn vertex_pairs(positions: &[Point3<f64>], boundary: &[u32], tolerance: f64) -> Vec<Pair> {
     let tree = BoxTree::new(boundary.iter().map(|&v| (positions[v as usize], v)));
-    let (mut pairs, mut found) = (Vec::new(), Vec::new());
-    for &v in boundary {
+    let near = |&v: &u32| {
         let at = &positions[v as usize];
-        tree.nearest_within(at, tolerance * tolerance, CANDIDATES, |other| other == v, |_| false, &mut found);
-        pairs.extend(found.iter().map(|&(sq, other)| Pair::new([v, other], sq.sqrt(), tolerance)));
-    }
-    pairs
+        let found = tree.nearest_within(at, tolerance * tolerance, CANDIDATES, |other| other == v, |_| false);
+        found.into_iter().map(move |(sq, other)| Pair::new([v, other], sq.sqrt(), tolerance))
+    };
+    boundary.iter().flat_map(near).collect()
 }
 
 /// The pairs of ends of boundary edges that are the two sides of a seam.
@@ -141,11 +140,10 @@ fn seam_pairs(positions: &[Point3<f64>], topology: &Topology, edges: &[EdgeId]) 
     };
     let tolerances: Vec<f64> = edges.iter().map(tolerance).collect();
     let tree = BoxTree::new((0..edges.len() as u32).map(|i| (middle(i), i)));
-    let (mut pairs, mut found) = (Vec::new(), Vec::new());
+    let mut pairs = Vec::new();
     for i in 0..edges.len() as u32 {
         let sq_tolerance = tolerances[i as usize] * tolerances[i as usize];
-        tree.nearest_within(&middle(i), sq_tolerance, CANDIDATES, |j| j == i, |_| false, &mut found);
-        for &(_, j) in &found {
+        for (_, j) in tree.nearest_within(&middle(i), sq_tolerance, CANDIDATES, |j| j == i, |_| false) {
             // Two faces over the same vertex would become one.
             if apex(i) == apex(j) {
                 continue;
