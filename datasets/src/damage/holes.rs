@@ -1,7 +1,7 @@
 //! Holes.
 
 use mesh::TriMesh;
-use surface::{NearestFirst, components_of_faces};
+use surface::{NearestFirst, Rows, components_of_faces};
 
 use super::cut_off::with_faces;
 use crate::stream::Stream;
@@ -36,10 +36,8 @@ pub(super) fn holes(mesh: &TriMesh, share: f64, stream: &mut Stream) -> TriMesh 
 /// The mesh without the faces around `first`, nearest in space first, until they cover `area`. They are connected by
 /// vertices.
 fn without_disc(mesh: &TriMesh, first: usize, area: f64) -> TriMesh {
-    let mut faces_at = vec![Vec::new(); mesh.n_vertices()];
-    for (f, face) in mesh.faces.iter().enumerate() {
-        face.iter().for_each(|v| faces_at[v.index()].push(f));
-    }
+    let corners = mesh.faces.iter().flatten().enumerate();
+    let faces_at = Rows::collect(mesh.n_vertices(), corners.map(|(corner, v)| (v.index(), corner / 3)));
     let center = |f: usize| mesh.triangle(f).iter().map(|p| p.coords).sum::<nalgebra::Vector3<f64>>() / 3.0;
     let middle = center(first);
     let mut reached = vec![false; mesh.n_faces()];
@@ -53,7 +51,7 @@ fn without_disc(mesh: &TriMesh, first: usize, area: f64) -> TriMesh {
     {
         is_cut[f] = true;
         covered += 0.5 * mesh.area_vector(f).norm();
-        for &near in mesh.faces[f].iter().flat_map(|v| &faces_at[v.index()]) {
+        for &near in mesh.faces[f].iter().flat_map(|v| faces_at.row(v.index())) {
             if !std::mem::replace(&mut reached[near], true) {
                 queue.push((center(near) - middle).norm_squared(), near);
             }

@@ -14,7 +14,7 @@ use std::fmt;
 use mesh::{TriMesh, shapes};
 use nalgebra::Matrix3;
 
-use self::remesh::{decimated, remeshed};
+use self::remesh::{collapsed, remeshed};
 use crate::stream::{Purpose, Stream};
 
 pub use weld::WeldPair;
@@ -89,7 +89,9 @@ impl Damage {
         let mut stream = Stream::new(seed, 0, 0, Purpose::Damage);
         match self {
             Self::Subdivide(times) => (0..times).fold(mesh.clone(), |mesh, _| shapes::subdivide(&mesh)),
-            Self::Decimate(share) => decimated(mesh, (share * mesh.n_vertices() as f64) as usize),
+            Self::Decimate(share) => {
+                collapsed(mesh, (share * mesh.n_vertices() as f64) as usize, &|error, _, _| error)
+            }
             Self::Remesh => remeshed(mesh, 1.0, &mut stream),
             Self::Sample(share) => remeshed(mesh, share, &mut stream),
             Self::Weld(pair, n) => weld::weld(mesh, pair, n, &mut stream),

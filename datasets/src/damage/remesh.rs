@@ -8,11 +8,6 @@ use crate::stream::Stream;
 /// Vertices per new vertex before a mesh is triangulated anew.
 const SURPLUS: usize = 6;
 
-/// Collapses edges by quadric error until `n_vertices` vertices are left.
-pub(super) fn decimated(mesh: &TriMesh, n_vertices: usize) -> TriMesh {
-    collapsed(mesh, n_vertices, &|error, _, _| error)
-}
-
 /// Triangulates a mesh anew, with the given share of its vertices: splits its faces into many and collapses short edges, in
 /// an order that is partly random.
 pub(super) fn remeshed(mesh: &TriMesh, share: f64, stream: &mut Stream) -> TriMesh {
@@ -25,7 +20,12 @@ pub(super) fn remeshed(mesh: &TriMesh, share: f64, stream: &mut Stream) -> TriMe
     collapsed(&fine, n_vertices, &|_, sq_length, [a, b]| sq_length * factors[a] * factors[b])
 }
 
-fn collapsed(mesh: &TriMesh, n_vertices: usize, cost: &dyn Fn(f64, f64, [usize; 2]) -> f64) -> TriMesh {
+/// Collapses edges by their cost until `n_vertices` vertices are left.
+pub(super) fn collapsed(
+    mesh: &TriMesh,
+    n_vertices: usize,
+    cost: &dyn Fn(f64, f64, [usize; 2]) -> f64,
+) -> TriMesh {
     match collapse_edges(mesh, n_vertices, cost, &Budget::unlimited()) {
         Ok(found) => found.mesh,
         Err(_) => unreachable!("the budget is unlimited"),
