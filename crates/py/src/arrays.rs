@@ -4,7 +4,9 @@ use canonform::linalg::Matrix;
 use canonform::mesh::TriMesh;
 use canonform::surface::VertexId;
 use nalgebra::Point3;
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{
+    Element, IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods,
+};
 use pyo3::prelude::*;
 
 use crate::error::Exception;
@@ -31,30 +33,47 @@ fn rows<T>(values: &[T]) -> impl Iterator<Item = &[T; 3]> {
     values.as_chunks().0.iter()
 }
 
+/// A vector, which Python gets without a copy.
+pub(crate) struct Vector<T>(pub(crate) Vec<T>);
+
+impl<'py, T: Element> IntoPyObject<'py> for Vector<T> {
+    type Target = PyArray1<T>;
+    type Output = Bound<'py, PyArray1<T>>;
+    type Error = PyErr;
+
+    fn into_pyobject(self, py: Python<'py>) -> PyResult<Self::Output> {
+        Ok(self.0.into_pyarray(py))
+    }
+}
+
+/// The rows of a matrix, one after the other, and its shape. Python gets it without a copy.
+pub(crate) struct Rows<T>(pub(crate) Vec<T>, pub(crate) [usize; 2]);
+
+impl<'py, T: Element> IntoPyObject<'py> for Rows<T> {
+    type Target = PyArray2<T>;
+    type Output = Bound<'py, PyArray2<T>>;
+    type Error = PyErr;
+
+    fn into_pyobject(self, py: Python<'py>) -> PyResult<Self::Output> {
+        self.0.into_pyarray(py).reshape(self.1)
+    }
+}
+
+impl<T, const N: usize> From<Vec<[T; N]>> for Rows<T> {
+    fn from(rows: Vec<[T; N]>) -> Self {
+        let n = rows.len();
+        Self(rows.into_flattened(), [n, N])
+    }
+}
+
 /// The positions of a mesh, n x 3.
-pub(crate) fn positions<'py>(py: Python<'py>, points: &[Point3<f64>]) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let flat = points.iter().flat_map(|p| [p.x, p.y, p.z]).collect();
-    matrix(py, flat, [points.len(), 3])
+pub(crate) fn positions(points: &[Point3<f64>]) -> Rows<f64> {
+    points.iter().map(|p| [p.x, p.y, p.z]).collect::<Vec<_>>().into()
 }
 
 /// The faces of a mesh, m x 3.
-pub(crate) fn faces<'py>(py: Python<'py>, faces: &[[VertexId; 3]]) -> PyResult<Bound<'py, PyArray2<i64>>> {
-    let flat: Vec<i64> = faces.iter().flatten().map(|v| i64::from(v.0)).collect();
-    flat.into_pyarray(py).reshape([faces.len(), 3])
-}
-
-/// A matrix from its rows, one after the other, without a copy.
-pub(crate) fn matrix(
-    py: Python<'_>,
-    rows: Vec<f64>,
-    shape: [usize; 2],
-) -> PyResult<Bound<'_, PyArray2<f64>>> {
-    rows.into_pyarray(py).reshape(shape)
-}
-
-/// A vector, without a copy.
-pub(crate) fn vector(py: Python<'_>, values: Vec<f64>) -> Bound<'_, PyArray1<f64>> {
-    values.into_pyarray(py)
+pub(crate) fn faces(faces: &[[VertexId; 3]]) -> Rows<i64> {
+    faces.iter().map(|face| face.map(|v| i64::from(v.0))).collect::<Vec<_>>().into()
 }
 
 /// A matrix of the library from an array, whatever its layout.
@@ -65,14 +84,14 @@ pub(crate) fn matrix_of(array: &PyReadonlyArray2<'_, f64>) -> Matrix {
 }
 
 /// A matrix of the library.
-pub(crate) fn of_matrix<'py>(py: Python<'py>, values: &Matrix) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    matrix(py, picked_rows(values, (0..values.nrows()).map(Some)), [values.nrows(), values.ncols()])
+pub(crate) fn of_matrix(values: &Matrix) -> Rows<f64> {
+    picked_rows(values, (0..values.nrows()).map(Some))
 }
 
-/// Rows of a matrix, one after the other; NaN where `row` names none.
-pub(crate) fn picked_rows(columns: &Matrix, rows: impl Iterator<Item = Option<usize>>) -> Vec<f64> {
-    let (n, k) = (columns.nrows(), columns.ncols());
+/// Rows of a matrix; NaN where `row` names none.
+pub(crate) fn picked_rows(columns: &Matrix, rows: impl ExactSizeIterator<Item = Option<usize>>) -> Rows<f64> {
+    let (n, shape) = (columns.nrows(), [rows.len(), columns.ncols()]);
     let values = columns.as_slice();
     let value = |row: Option<usize>, column: usize| row.map_or(f64::NAN, |row| values[column * n + row]);
-    rows.flat_map(|row| (0..k).map(move |column| value(row, column))).collect()
+    Rows(rows.flat_map(|row| (0..shape[1]).map(move |column| value(row, column))).collect(), shape)
 }

@@ -2,10 +2,9 @@
 
 use canonform::compare::compare_meshes;
 use canonform::rigid::{Reflections, align_points};
-use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays;
+use crate::arrays::{Rows, Vector};
 use crate::form::Form;
 use crate::record::json;
 use crate::run::run;
@@ -13,29 +12,28 @@ use crate::settings::Settings;
 use crate::surface::Surface;
 
 /// A rigid motion: rotation, translation, whether it includes a reflection, and how far nearest points are apart after it.
-type Motion<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>, bool, f64);
+type Motion = (Rows<f64>, Vector<f64>, bool, f64);
 
 /// The rigid motion that takes one form onto another, in mesh units.
 #[pyfunction]
-pub(crate) fn align<'py>(py: Python<'py>, a: &Form, b: &Form, reflections: bool) -> PyResult<Motion<'py>> {
+pub(crate) fn align(py: Python<'_>, a: &Form, b: &Form, reflections: bool) -> PyResult<Motion> {
     let reflections = if reflections { Reflections::Allow } else { Reflections::Forbid };
     let found = run(py, |_| Ok(align_points(&a.prepared()?, &b.prepared()?, reflections)))?;
     let rotation = found.map.rotation.transpose().as_slice().to_vec();
     let translation = found.map.translation.as_slice().to_vec();
-    let rotation = arrays::matrix(py, rotation, [3, 3])?;
-    Ok((rotation, arrays::vector(py, translation), found.map.reflected, found.gap.rms))
+    Ok((Rows(rotation, [3, 3]), Vector(translation), found.map.reflected, found.gap.rms))
 }
 
 /// The comparison of two surfaces as the JSON of `canonform compare`, and the residuals of the vertices of both repaired
 /// meshes.
 #[pyfunction]
-pub(crate) fn compare<'py>(
-    py: Python<'py>,
+pub(crate) fn compare(
+    py: Python<'_>,
     a: &Surface,
     b: &Surface,
     names: [String; 2],
     settings: Settings,
-) -> PyResult<(String, Bound<'py, PyArray1<f64>>)> {
+) -> PyResult<(String, Vector<f64>)> {
     let [of_a, of_b] = [settings.form(a.inner.input.repair)?, settings.form(b.inner.input.repair)?];
     let (found, residuals) = run(py, |observer| {
         let sides = [a.compared(&of_a, observer)?, b.compared(&of_b, observer)?];
@@ -44,5 +42,5 @@ pub(crate) fn compare<'py>(
         let residuals = a.inner.in_input_order(&found.overlay.residuals[0], f64::NAN);
         Ok((found, residuals))
     })?;
-    Ok((json(&found), arrays::vector(py, residuals)))
+    Ok((json(&found), Vector(residuals)))
 }

@@ -5,17 +5,15 @@ use ::datasets::{
     articulated_at_rest, creature_body, creature_plans,
 };
 use canonform::mesh::TriMesh;
-use numpy::PyArray2;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
-use crate::arrays;
+use crate::arrays::{Rows, faces, positions};
 use crate::error::of_dataset;
 use crate::run::run;
 
 /// A shape: name, class, vertices, faces, and the vertices at rest, if the shapes of its family correspond there.
-type Generated<'py> =
-    (String, String, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<i64>>, Option<Bound<'py, PyArray2<f64>>>);
+type Generated = (String, String, Rows<f64>, Rows<i64>, Option<Rows<f64>>);
 
 /// The families of articulated shapes, each with its number of shapes, and the plans of creatures, which have as many as you like.
 #[pyfunction]
@@ -31,13 +29,13 @@ fn articulated_families() -> impl Iterator<Item = Family> {
 
 /// Shapes of one of the families, by pose.
 #[pyfunction]
-pub(crate) fn generate<'py>(
-    py: Python<'py>,
+pub(crate) fn generate(
+    py: Python<'_>,
     family: &str,
     poses: Vec<usize>,
     n_vertices: usize,
     seed: u64,
-) -> PyResult<Vec<Generated<'py>>> {
+) -> PyResult<Vec<Generated>> {
     let articulated = articulated_families().find(|known| known.name() == family);
     let plan = creature_plans().iter().position(|plan| *plan == family).unwrap_or_default();
     let n_poses = poses.iter().max().map_or(0, |pose| pose + 1);
@@ -61,8 +59,8 @@ pub(crate) fn generate<'py>(
     })?;
     let arrays = |made: Result<(LabeledShape, Option<TriMesh>), DatasetError>| {
         let (LabeledShape { name, label, mesh }, rest) = made.map_err(|fault| of_dataset(&fault))?;
-        let rest = rest.map(|rest| arrays::positions(py, &rest.positions)).transpose()?;
-        Ok((name, label, arrays::positions(py, &mesh.positions)?, arrays::faces(py, &mesh.faces)?, rest))
+        let rest = rest.map(|rest| positions(&rest.positions));
+        Ok((name, label, positions(&mesh.positions), faces(&mesh.faces), rest))
     };
     made.into_iter().map(arrays).collect()
 }

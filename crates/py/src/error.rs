@@ -112,6 +112,11 @@ pub(crate) fn to_python(fault: &Error) -> PyErr {
     Exception::of(fault).with(&with_remedy(fault.to_string(), fault.remedy()))
 }
 
+/// A result of the library as one of Python.
+pub(crate) fn raised<T>(found: Result<T, impl Into<Error>>) -> PyResult<T> {
+    found.map_err(|fault| to_python(&fault.into()))
+}
+
 pub(crate) fn of_dataset(fault: &DatasetError) -> PyErr {
     Exception::OptionError.with(&fault.to_string())
 }

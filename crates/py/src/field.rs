@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use canonform::fields::{FieldOptions, Finish, PairDistance, PairKind};
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::arrays;
+use crate::arrays::Vector;
 use crate::error::Exception;
-use crate::points::{vertex, vertex_of};
+use crate::points::{pairs_of, vertex_of};
 use crate::record::json;
 use crate::run::run;
 use crate::settings::Settings;
@@ -20,33 +20,23 @@ use crate::surface::Surface;
 pub(crate) struct DistanceField(canonform::fields::DistanceField);
 
 /// Vertices, and their distances.
-type Neighbors<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<f64>>);
+type Neighbors = (Vector<i64>, Vector<f64>);
 
 /// Distances, lower and upper bounds, and which distances are exact.
-type Answers<'py> = (
-    Bound<'py, PyArray1<f64>>,
-    Bound<'py, PyArray1<f64>>,
-    Bound<'py, PyArray1<f64>>,
-    Bound<'py, PyArray1<bool>>,
-);
+type Answers = (Vector<f64>, Vector<f64>, Vector<f64>, Vector<bool>);
 
 /// `None` finishes no pair.
 fn finish(tolerance: Option<f64>) -> Finish {
     tolerance.map_or(Finish::Never, Finish::Beyond)
 }
 
-fn answers<'py>(py: Python<'py>, found: &[PairDistance]) -> Answers<'py> {
+fn answers(found: &[PairDistance]) -> Answers {
     let column = |value: fn(&PairDistance) -> f64| {
         let known = |pair: &PairDistance| if pair.kind == PairKind::Dropped { f64::NAN } else { value(pair) };
-        arrays::vector(py, found.iter().map(known).collect())
+        Vector(found.iter().map(known).collect())
     };
-    let exact: Vec<bool> = found.iter().map(|pair| pair.kind == PairKind::Exact).collect();
-    (
-        column(|pair| pair.distance),
-        column(|pair| pair.lower),
-        column(|pair| pair.upper),
-        exact.into_pyarray(py),
-    )
+    let exact = found.iter().map(|pair| pair.kind == PairKind::Exact).collect();
+    (column(|pair| pair.distance), column(|pair| pair.lower), column(|pair| pair.upper), Vector(exact))
 }
 
 #[pymethods]
@@ -98,48 +88,34 @@ impl DistanceField {
     }
 
     /// Vertices of the input.
-    fn landmarks<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        self.0.landmarks().iter().map(|v| i64::from(v.0)).collect::<Vec<_>>().into_pyarray(py)
+    fn landmarks(&self) -> Vector<i64> {
+        Vector(self.0.landmarks().iter().map(|v| i64::from(v.0)).collect())
     }
 
     /// The distances of the rows of an n x 2 array.
-    fn pairs<'py>(
+    fn pairs(
         &self,
-        py: Python<'py>,
-        pairs: PyReadonlyArray2<'py, i64>,
+        py: Python<'_>,
+        pairs: PyReadonlyArray2<'_, i64>,
         tolerance: Option<f64>,
-    ) -> PyResult<Answers<'py>> {
-        debug_assert_eq!(pairs.shape()[1], 2);
-        let finish = finish(tolerance);
-        let rows = pairs.as_slice()?.as_chunks::<2>().0.iter();
-        let pairs = rows.map(|[a, b]| Ok([vertex(*a)?, vertex(*b)?])).collect::<PyResult<Vec<_>>>()?;
+    ) -> PyResult<Answers> {
+        let (pairs, finish) = (pairs_of(&pairs)?, finish(tolerance));
         let found = run(py, |observer| Ok(self.0.pairs(&pairs, finish, observer)?))?;
-        Ok(answers(py, &found))
+        Ok(answers(&found))
     }
 
     /// The distances from one vertex to all.
-    fn row<'py>(
-        &self,
-        py: Python<'py>,
-        source: &Bound<'py, PyAny>,
-        tolerance: Option<f64>,
-    ) -> PyResult<Answers<'py>> {
+    fn row(&self, py: Python<'_>, source: &Bound<'_, PyAny>, tolerance: Option<f64>) -> PyResult<Answers> {
         let (source, finish) = (vertex_of(source)?, finish(tolerance));
         let found = run(py, |observer| Ok(self.0.row(source, finish, observer)?))?;
-        Ok(answers(py, &found))
+        Ok(answers(&found))
     }
 
     /// The nearest vertices, and their distances.
-    fn nearest<'py>(
-        &self,
-        py: Python<'py>,
-        source: &Bound<'py, PyAny>,
-        k: usize,
-    ) -> PyResult<Neighbors<'py>> {
+    fn nearest(&self, py: Python<'_>, source: &Bound<'_, PyAny>, k: usize) -> PyResult<Neighbors> {
         let source = vertex_of(source)?;
         let found = run(py, |observer| Ok(self.0.nearest(source, k, observer)?))?;
-        let (vertices, distances): (Vec<i64>, Vec<f64>) =
-            found.iter().map(|pair| (i64::from(pair.b.0), pair.distance)).unzip();
-        Ok((vertices.into_pyarray(py), arrays::vector(py, distances)))
+        let (vertices, distances) = found.iter().map(|pair| (i64::from(pair.b.0), pair.distance)).unzip();
+        Ok((Vector(vertices), Vector(distances)))
     }
 }

@@ -8,11 +8,10 @@ use canonform::embed::Embedded;
 use canonform::mesh::TriMesh;
 use canonform::rigid::PointSet;
 use canonform::surface::VertexId;
-use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays;
-use crate::error::{Exception, to_python};
+use crate::arrays::{Rows, Vector, of_matrix, picked_rows};
+use crate::error::{Exception, raised};
 use crate::points::points_of;
 use crate::record::json;
 use crate::run::run;
@@ -50,45 +49,39 @@ impl Form {
 #[pymethods]
 impl Form {
     /// Coordinates in the order of the input, NaN for vertices that the repair dropped.
-    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let coords = &self.embedded.embedding.coords;
+    fn points(&self) -> Rows<f64> {
         let rows = self.surface.input.remap.all_to_new().map(|vertex| vertex.map(VertexId::index));
-        let shape = [rows.len(), coords.ncols()];
-        arrays::matrix(py, arrays::picked_rows(coords, rows), shape)
+        picked_rows(&self.embedded.embedding.coords, rows)
     }
 
     /// Coordinates of the surface bent into its form, in the order of the input.
-    fn bent_points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn bent_points(&self, py: Python<'_>) -> PyResult<Rows<f64>> {
         let bent = run(py, |observer| Ok(self.weighted()?.with_features(self.surface.mesh(), observer)?))?;
         let points: Vec<[f64; 3]> = bent.points().iter().map(|p| p.coords.into()).collect();
-        let rows = self.surface.in_input_order(&points, [f64::NAN; 3]);
-        let n = rows.len();
-        arrays::matrix(py, rows.into_flattened(), [n, 3])
+        Ok(self.surface.in_input_order(&points, [f64::NAN; 3]).into())
     }
 
-    fn eigenvalues<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        arrays::vector(py, self.embedded.embedding.eigenvalues.clone())
+    fn eigenvalues(&self) -> Vector<f64> {
+        Vector(self.embedded.embedding.eigenvalues.clone())
     }
 
     /// Distances from the samples to all vertices of the input, one row per sample.
-    fn distances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn distances(&self, py: Python<'_>) -> PyResult<Rows<f64>> {
         let known = &self.embedded.distances;
         let (n, p) = (known.n_landmarks(), self.surface.n_input_vertices());
-        let rows = run(py, |_| {
+        run(py, |_| {
             let mut rows = Vec::with_capacity(n * p);
             for landmark in 0..n {
                 rows.extend(self.surface.in_input_order(&known.column(landmark)?, f64::NAN));
             }
-            Ok(rows)
-        })?;
-        arrays::matrix(py, rows, [n, p])
+            Ok(Rows(rows, [n, p]))
+        })
     }
 
     /// Coordinates of points of the surface, one row each.
-    fn place<'py>(&self, py: Python<'py>, points: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn place(&self, py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<Rows<f64>> {
         let points = points_of(points)?;
-        let placed = run(py, |_| self.embedded.place(&self.surface, &points))?;
-        arrays::of_matrix(py, &placed)
+        Ok(of_matrix(&run(py, |_| self.embedded.place(&self.surface, &points))?))
     }
 
     /// Facts about the embedding, as the JSON of `canonform embed`.
@@ -104,6 +97,6 @@ impl Form {
     /// Writes the form as a mesh.
     fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let mesh = self.to_mesh()?;
-        py.detach(|| canonform::mesh::io::write(&path, &mesh)).map_err(|fault| to_python(&fault.into()))
+        raised(py.detach(|| canonform::mesh::io::write(&path, &mesh)))
     }
 }

@@ -17,13 +17,13 @@ use canonform::mesh::RepairOptions;
 use canonform::retrieval::{Labels, evaluate};
 use canonform::search::{Answer, Query, SearchOptions, ShapeSearch};
 use canonform::{DescribeOptions, Error, Observer};
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use serde::de::DeserializeOwned;
 
-use crate::arrays;
-use crate::error::{Exception, to_python, with_remedy};
+use crate::arrays::{Rows, Vector, of_matrix};
+use crate::error::{Exception, raised, with_remedy};
 use crate::record::json;
 use crate::run::run;
 use crate::settings::{Settings, chosen, measure};
@@ -52,7 +52,7 @@ fn search_options(k: usize, rank: &str, explain: bool) -> PyResult<SearchOptions
 
 /// Where classes come from: a word, or a label file.
 fn labels_of(labels: Option<PathBuf>) -> PyResult<Option<LabelSource>> {
-    labels.map(|path| LabelSource::read(&path)).transpose().map_err(|fault| to_python(&fault.into()))
+    raised(labels.map(|path| LabelSource::read(&path)).transpose())
 }
 
 /// The report on a build, with the remedies of failures in words.
@@ -76,7 +76,6 @@ impl Index {
     /// Makes a file the index of the meshes in a folder; returns the report as JSON. With `only_unchanged`, nothing is done, and
     /// there is a report only if there is nothing to do.
     #[staticmethod]
-    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn build(
         py: Python<'_>,
         folder: PathBuf,
@@ -90,7 +89,7 @@ impl Index {
     ) -> PyResult<Option<String>> {
         let describe = settings.describe(settings.repair())?;
         let labels = labels_of(labels)?;
-        let shard = shard.map(|(i, n)| Shard::new(i, n)).transpose().map_err(|fault| to_python(&fault))?;
+        let shard = raised(shard.map(|(i, n)| Shard::new(i, n)).transpose())?;
         let options = BuildOptions {
             labels: labels.as_ref(),
             shard,
@@ -134,7 +133,6 @@ impl Index {
     }
 
     /// Scores how well the classes are separated; returns the scores as JSON.
-    #[pyo3(signature = (by, k, rank, labels))]
     fn evaluate(
         &self,
         py: Python<'_>,
@@ -191,8 +189,7 @@ impl Index {
         k: usize,
     ) -> PyResult<Vec<(String, f64)>> {
         let vector = vector.as_slice()?;
-        let found = run(py, |_| Ok(self.search.index().nearest(vector, k)?))?;
-        Ok(found)
+        run(py, |_| Ok(self.search.index().nearest(vector, k)?))
     }
 
     /// A shape as a query for other indexes, as JSON.
@@ -203,7 +200,6 @@ impl Index {
 
     /// The answer to a query of another process, among some shapes or all, and with the classes of all indexes that are searched;
     /// all as JSON.
-    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn search_among(
         &self,
         py: Python<'_>,
@@ -239,20 +235,18 @@ impl Index {
     }
 
     fn contains(&self, id: &str) -> PyResult<bool> {
-        self.search.index().contains(id).map_err(|fault| to_python(&fault.into()))
+        raised(self.search.index().contains(id))
     }
 
     /// Name, class, path and numbers of vertices and faces of a shape.
     fn entry(&self, id: &str) -> PyResult<ListedShape> {
-        let found = self.search.index().entry(id).map_err(|fault| to_python(&fault.into()))?;
-        Ok(self.listed(found))
+        raised(self.search.index().entry(id)).map(|found| self.listed(found))
     }
 
     /// What the index holds, as JSON.
     fn info(&self) -> PyResult<String> {
         let index = self.search.index();
-        let classes = index.classes().map_err(|fault| to_python(&fault.into()))?;
-        let n_shapes = index.len();
+        let (classes, n_shapes) = (raised(index.classes())?, index.len());
         Ok(json(&object! {
             format: FORMAT_VERSION,
             n_shapes,
@@ -270,34 +264,32 @@ impl Index {
     }
 
     /// The fused vectors of all shapes, in the order of `shapes`.
-    fn vectors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let index = self.search.index();
-        let flat = run(py, |_| {
-            let table = index.vector_table()?;
-            Ok((0..table.len()).flat_map(|i| table.vector(i).iter().copied()).collect::<Vec<f32>>())
-        })?;
-        let length = flat.len().checked_div(index.len()).unwrap_or(0);
-        flat.into_pyarray(py).reshape([index.len(), length])
+    fn vectors(&self, py: Python<'_>) -> PyResult<Rows<f32>> {
+        run(py, |_| {
+            let table = self.search.index().vector_table()?;
+            let flat: Vec<f32> = (0..table.len()).flat_map(|i| table.vector(i).iter().copied()).collect();
+            let length = flat.len().checked_div(table.len()).unwrap_or(0);
+            Ok(Rows(flat, [table.len(), length]))
+        })
     }
 
     /// The fused vector of one shape.
-    fn vector<'py>(&self, py: Python<'py>, id: &str) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        let shape = self.search.index().shape(id).map_err(|fault| to_python(&fault.into()))?;
-        Ok(shape.fused.into_pyarray(py))
+    fn vector(&self, id: &str) -> PyResult<Vector<f32>> {
+        raised(self.search.index().shape(id)).map(|shape| Vector(shape.fused))
     }
 
     /// Distances between some shapes and others, or between all pairs of some, one row for each of the first: combined, by
     /// aligned forms and signatures, or by signatures alone.
-    fn distances<'py>(
+    fn distances(
         &self,
-        py: Python<'py>,
+        py: Python<'_>,
         rows: Vec<String>,
         columns: Option<Vec<String>>,
         kind: &str,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    ) -> PyResult<Rows<f64>> {
         let kind = chosen("kind", kind)?;
         let distances = run(py, |observer| self.search.distances(&rows, columns.as_deref(), kind, observer))?;
-        arrays::of_matrix(py, &distances)
+        Ok(of_matrix(&distances))
     }
 
     /// The surface of the mesh of a shape, repaired as the index says.
@@ -433,7 +425,7 @@ pub(crate) fn evaluate_matrix(
 ) -> PyResult<String> {
     let (distances, rank_by) = (distances.as_array(), chosen("rank", rank)?);
     let mean = |i: usize, j: usize| 0.5 * (distances[(i, j)] + distances[(j, i)]);
-    let matrix = DistanceMatrix::from_pairs(labels.len(), mean).map_err(|fault| to_python(&fault.into()))?;
+    let matrix = raised(DistanceMatrix::from_pairs(labels.len(), mean))?;
     let scores = run(py, |_| Ok(evaluate(&matrix, &Labels::new(&labels), k, rank_by)?))?;
     Ok(json(&scores))
 }

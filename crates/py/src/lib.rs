@@ -8,6 +8,8 @@
 //! * Results come in the vertex order of the input, as NumPy arrays; reports come as the JSON of the command line.
 //! * Errors become the exceptions of `canonform.errors`, see `error`.
 
+#![expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
+
 mod arrays;
 mod compare;
 mod datasets;
@@ -29,40 +31,38 @@ use pyo3::prelude::*;
 
 #[pymodule(gil_used = false)]
 mod _canonform {
+    use canonform::descriptors::SignatureKind;
+    use canonform::mesh::io::{Content, writable};
+    use canonform::settings::{EmbeddingName, Geodesic};
     use pyo3::prelude::*;
 
+    use crate::settings::named;
+
     #[pymodule_export]
-    use crate::compare::{align, compare};
-    #[pymodule_export]
-    use crate::datasets::{families, generate};
-    #[pymodule_export]
-    use crate::field::DistanceField;
-    #[pymodule_export]
-    use crate::form::Form;
-    #[pymodule_export]
-    use crate::index::{
-        Index, agreement, content_hashes, evaluate_matrix, list_folder, merge_answers, merge_indexes,
-        query_components, query_of_surface, shortlist,
+    use crate::{
+        compare::{align, compare},
+        datasets::{families, generate},
+        field::DistanceField,
+        form::Form,
+        index::{
+            Index, agreement, content_hashes, evaluate_matrix, list_folder, merge_answers, merge_indexes,
+            query_components, query_of_surface, shortlist,
+        },
+        matching::{map_basis, map_points, match_surfaces},
+        nystrom::{Extension, nystrom},
+        operators::{closest_points, eigenbasis, laplacian, log_map},
+        picture::{draw, figure, scene_page, scene_scripts},
+        run::{begin_call, check_call, end_call, set_threads, threads},
+        settings::check_options,
+        surface::{Surface, write},
     };
-    #[pymodule_export]
-    use crate::matching::{map_basis, map_points, match_surfaces};
-    #[pymodule_export]
-    use crate::nystrom::{Extension, nystrom};
-    #[pymodule_export]
-    use crate::operators::{closest_points, eigenbasis, laplacian, log_map};
-    #[pymodule_export]
-    use crate::picture::{draw, figure, scene_page, scene_scripts};
-    #[pymodule_export]
-    use crate::run::{begin_call, check_call, end_call, set_threads, threads};
-    #[pymodule_export]
-    use crate::settings::{
-        check_options, distance_methods, embedding_methods, mesh_formats, signature_kinds,
-    };
-    #[pymodule_export]
-    use crate::surface::{Surface, write};
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("DISTANCE_METHODS", named::<Geodesic>())?;
+        module.add("EMBEDDING_METHODS", named::<EmbeddingName>())?;
+        module.add("SIGNATURE_KINDS", SignatureKind::ALL.map(SignatureKind::name))?;
+        module.add("MESH_FORMATS", writable(Content::Mesh).collect::<Vec<_>>())?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -2,18 +2,18 @@
 
 use canonform::linalg::LandmarkDistances;
 use canonform::nmds::{Embedding, OutOfSample, nystrom_extended};
-use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{self, matrix_of};
+use crate::arrays::{Rows, Vector, matrix_of, of_matrix};
 use crate::run::run;
 use crate::settings::Settings;
 
 /// An embedding, and what places further points in it.
-type Embedded<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>, f64, usize, Extension);
+type Embedded = (Rows<f64>, Vector<f64>, f64, usize, Extension);
 
 /// The arguments of an [`Extension`].
-type Arguments<'py> = (f64, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>);
+type Arguments = (f64, Vector<f64>, Rows<f64>);
 
 /// Places further points by their distances to the landmarks.
 #[pyclass(frozen, module = "canonform._canonform")]
@@ -27,38 +27,31 @@ impl Extension {
     }
 
     /// Coordinates from distances, one row for each point.
-    fn place<'py>(
-        &self,
-        py: Python<'py>,
-        distances: PyReadonlyArray2<'py, f64>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn place(&self, py: Python<'_>, distances: PyReadonlyArray2<'_, f64>) -> PyResult<Rows<f64>> {
         let distances = matrix_of(&distances);
-        let placed = run(py, |_| Ok(self.0.place(&distances)?))?;
-        arrays::of_matrix(py, &placed)
+        Ok(of_matrix(&run(py, |_| Ok(self.0.place(&distances)?))?))
     }
 
     /// What `pickle` needs to make it again.
-    fn __getnewargs__<'py>(&self, py: Python<'py>) -> PyResult<Arguments<'py>> {
+    fn __getnewargs__(&self) -> Arguments {
         let OutOfSample { unit, means, axes } = &self.0;
-        let axes = arrays::of_matrix(py, axes)?;
-        Ok((*unit, arrays::vector(py, means.clone()), axes))
+        (*unit, Vector(means.clone()), of_matrix(axes))
     }
 }
 
 /// Nystrom MDS from columns of distances, one for each landmark.
 #[pyfunction]
-pub(crate) fn nystrom<'py>(
-    py: Python<'py>,
-    columns: PyReadonlyArray2<'py, f64>,
+pub(crate) fn nystrom(
+    py: Python<'_>,
+    columns: PyReadonlyArray2<'_, f64>,
     landmarks: Vec<usize>,
     settings: Settings,
-) -> PyResult<Embedded<'py>> {
+) -> PyResult<Embedded> {
     let (regularization, dim) = settings.nystrom()?;
     let columns = matrix_of(&columns);
     let (embedding, extension) = run(py, |_| {
         Ok(nystrom_extended(&LandmarkDistances::new(landmarks, columns)?, regularization, dim)?)
     })?;
     let Embedding { coords, eigenvalues, negative_mass, rank } = embedding;
-    let points = arrays::of_matrix(py, &coords)?;
-    Ok((points, arrays::vector(py, eigenvalues), negative_mass, rank, Extension(extension)))
+    Ok((of_matrix(&coords), Vector(eigenvalues), negative_mass, rank, Extension(extension)))
 }

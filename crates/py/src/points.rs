@@ -2,6 +2,7 @@
 
 use canonform::mesh::InputPoint;
 use canonform::surface::VertexId;
+use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
 
@@ -28,6 +29,12 @@ pub(crate) fn vertex_of(number: &Bound<'_, PyAny>) -> PyResult<VertexId> {
         Ok(found) if !number.is_instance_of::<PyBool>() => vertex(found),
         _ => Err(not_a_point(number)),
     }
+}
+
+/// Pairs of vertices of the input, the rows of an n x 2 array.
+pub(crate) fn pairs_of(pairs: &PyReadonlyArray2<'_, i64>) -> PyResult<Vec<[VertexId; 2]>> {
+    let pairs = pairs.as_slice()?.as_chunks::<2>().0.iter();
+    pairs.map(|[a, b]| Ok([vertex(*a)?, vertex(*b)?])).collect()
 }
 
 fn not_a_point(given: &Bound<'_, PyAny>) -> PyErr {

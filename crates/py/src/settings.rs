@@ -5,7 +5,6 @@ use std::fmt::Display;
 use std::time::Duration;
 
 use canonform::DescribeOptions;
-use canonform::descriptors::SignatureKind;
 use canonform::embed::{FormOptions, StressOptions};
 use canonform::geodesics::Method;
 use canonform::library::{Measure, ShapeLimits};
@@ -13,8 +12,8 @@ use canonform::maps::CorrespondOptions;
 use canonform::mesh::RepairOptions;
 use canonform::nmds::Regularization;
 use canonform::settings::{
-    DescriptionSettings, EmbeddingName, FormSettings, Geodesic, MapSettings, MarchingSettings,
-    MethodSettings, NoEffect, RepairSettings, StressSettings,
+    DescriptionSettings, FormSettings, MapSettings, MarchingSettings, MethodSettings, NoEffect,
+    RepairSettings, StressSettings,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -184,30 +183,7 @@ pub(crate) fn time_limit(seconds: Option<f64>) -> PyResult<Option<Duration>> {
 }
 
 /// The names of values, and what each of them does.
-fn named<T: Copy + VariantArray + EnumMessage + Into<&'static str>>() -> Vec<(&'static str, &'static str)> {
+pub(crate) fn named<T: Copy + VariantArray + EnumMessage + Into<&'static str>>()
+-> Vec<(&'static str, &'static str)> {
     T::VARIANTS.iter().map(|value| ((*value).into(), value.get_documentation().unwrap_or_default())).collect()
-}
-
-/// Methods that measure distances, and what they compute.
-#[pyfunction]
-pub(crate) fn distance_methods() -> Vec<(&'static str, &'static str)> {
-    named::<Geodesic>()
-}
-
-/// Methods that turn distances into coordinates, and what they compute.
-#[pyfunction]
-pub(crate) fn embedding_methods() -> Vec<(&'static str, &'static str)> {
-    named::<EmbeddingName>()
-}
-
-/// The names of the kinds of signatures.
-#[pyfunction]
-pub(crate) fn signature_kinds() -> Vec<&'static str> {
-    SignatureKind::ALL.map(SignatureKind::name).to_vec()
-}
-
-/// The extensions of the mesh formats that are written.
-#[pyfunction]
-pub(crate) fn mesh_formats() -> Vec<&'static str> {
-    canonform::mesh::io::writable(canonform::mesh::io::Content::Mesh).collect()
 }

@@ -17,11 +17,11 @@ use canonform::mesh::{InputPoint, RepairOptions, TriMesh};
 use canonform::rigid::TriangleTree;
 use canonform::surface::VertexId;
 use canonform::{ContentHash, DescribeOptions, Error, Observer, Shape};
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays;
-use crate::error::{Exception, to_python};
+use crate::arrays::{Rows, Vector, faces, mesh_of, positions};
+use crate::error::{Exception, raised};
 use crate::form::Form;
 use crate::points::{point_of, points_of};
 use crate::record::json;
@@ -193,18 +193,13 @@ impl Surface {
 }
 
 /// Vertices, faces, options of the repair as JSON, and the hash of a file.
-type State<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<i64>>, String, Option<String>);
+type State = (Rows<f64>, Rows<i64>, String, Option<String>);
 
 /// Vertices, faces, and the numbers of vertices of another mesh.
-type Repaired<'py> = (
-    Bound<'py, PyArray2<f64>>,
-    Bound<'py, PyArray2<i64>>,
-    Bound<'py, PyArray1<i64>>,
-    Bound<'py, PyArray1<i64>>,
-);
+type Repaired = (Rows<f64>, Rows<i64>, Vector<i64>, Vector<i64>);
 
 /// A path: its points, the points of the input that they are, and its length.
-type FoundPath<'py> = (Bound<'py, PyArray2<f64>>, Vec<String>, Vec<f64>, f64);
+type FoundPath = (Rows<f64>, Vec<String>, Vec<f64>, f64);
 
 #[pymethods]
 impl Surface {
@@ -216,7 +211,7 @@ impl Surface {
         faces: PyReadonlyArray2<'_, i64>,
         settings: Settings,
     ) -> PyResult<Self> {
-        let mesh = arrays::mesh_of(&vertices, &faces)?;
+        let mesh = mesh_of(&vertices, &faces)?;
         Self::repaired(py, &settings.repair(), || Ok((mesh, None)))
     }
 
@@ -246,10 +241,9 @@ impl Surface {
 
     /// What [`restore`](Self::restore) needs: vertices and faces as they were given, how they are repaired, and the hash of
     /// the file that they are from.
-    fn state<'py>(&self, py: Python<'py>) -> PyResult<State<'py>> {
-        let mesh = &self.mesh;
-        let (vertices, faces) = (arrays::positions(py, &mesh.positions)?, arrays::faces(py, &mesh.faces)?);
-        Ok((vertices, faces, json(&self.inner.input.repair), self.content.map(|hash| hash.to_string())))
+    fn state(&self) -> State {
+        let (vertices, faces) = (positions(&self.mesh.positions), faces(&self.mesh.faces));
+        (vertices, faces, json(&self.inner.input.repair), self.content.map(|hash| hash.to_string()))
     }
 
     /// The surface of which [`state`](Self::state) is the state.
@@ -267,7 +261,7 @@ impl Surface {
             .map(str::parse)
             .transpose()
             .map_err(|fault: String| Exception::CanonformError.with(&fault))?;
-        let mesh = arrays::mesh_of(&vertices, &faces)?;
+        let mesh = mesh_of(&vertices, &faces)?;
         Self::repaired(py, &options, || Ok((mesh, content)))
     }
 
@@ -286,24 +280,22 @@ impl Surface {
         self.inner.mesh().area()
     }
 
-    fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        arrays::positions(py, &self.mesh.positions)
+    fn vertices(&self) -> Rows<f64> {
+        positions(&self.mesh.positions)
     }
 
-    fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
-        arrays::faces(py, &self.inner.input.faces)
+    fn faces(&self) -> Rows<i64> {
+        faces(&self.inner.input.faces)
     }
 
     /// Vertices and faces of the repaired mesh, the vertex of the input that each of its vertices is from, and the vertex that
     /// each of the input became, or -1.
-    fn repaired_mesh<'py>(&self, py: Python<'py>) -> PyResult<Repaired<'py>> {
+    fn repaired_mesh(&self) -> Repaired {
         let (mesh, remap) = (self.inner.mesh(), &self.inner.input.remap);
         let number = |v: VertexId| i64::from(v.0);
-        let of_input: Vec<i64> = remap.all_to_new().map(|vertex| vertex.map_or(-1, number)).collect();
-        let to_input: Vec<i64> =
-            (0..mesh.n_vertices()).map(|v| number(remap.to_old(VertexId::from(v)))).collect();
-        let (vertices, faces) = (arrays::positions(py, &mesh.positions)?, arrays::faces(py, &mesh.faces)?);
-        Ok((vertices, faces, to_input.into_pyarray(py), of_input.into_pyarray(py)))
+        let of_input = remap.all_to_new().map(|vertex| vertex.map_or(-1, number)).collect();
+        let to_input = (0..mesh.n_vertices()).map(|v| number(remap.to_old(VertexId::from(v)))).collect();
+        (positions(&mesh.positions), faces(&mesh.faces), Vector(to_input), Vector(of_input))
     }
 
     /// The report on the repair, as JSON, and in words.
@@ -313,30 +305,29 @@ impl Surface {
     }
 
     /// Distances from the nearest of several points to all vertices of the input.
-    fn distances<'py>(
+    fn distances(
         &self,
-        py: Python<'py>,
-        sources: &Bound<'py, PyAny>,
+        py: Python<'_>,
+        sources: &Bound<'_, PyAny>,
         geodesic: Settings,
         max_distance: f64,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    ) -> PyResult<Vector<f64>> {
         let (method, points) = (geodesic.distances()?, points_of(sources)?);
-        let distances = self.solve(py, method, |solver, _| {
+        self.solve(py, method, |solver, _| {
             let mut distances = solver.budget().vector(solver.n_vertices())?;
             solver.solve_into(&self.sources(&points)?, max_distance, &mut distances)?;
-            Ok(self.in_input_order(distances))
-        })?;
-        Ok(arrays::vector(py, distances))
+            Ok(Vector(self.in_input_order(distances)))
+        })
     }
 
     /// One row of distances for each of several points, computed in parallel.
-    fn distances_many<'py>(
+    fn distances_many(
         &self,
-        py: Python<'py>,
-        sources: &Bound<'py, PyAny>,
+        py: Python<'_>,
+        sources: &Bound<'_, PyAny>,
         geodesic: Settings,
         max_distance: f64,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    ) -> PyResult<Rows<f64>> {
         let (method, points) = (geodesic.distances()?, points_of(sources)?);
         let p = self.mesh.n_vertices();
         let mut rows = self.solve(py, method, |solver, observer| {
@@ -346,16 +337,16 @@ impl Surface {
         for (v, _) in dropped {
             rows.iter_mut().skip(v).step_by(p).for_each(|distance| *distance = f64::NAN);
         }
-        arrays::matrix(py, rows, [points.len(), p])
+        Ok(Rows(rows, [points.len(), p]))
     }
 
     /// Shortest paths from one point to each of several.
-    fn paths<'py>(
+    fn paths(
         &self,
-        py: Python<'py>,
-        source: &Bound<'py, PyAny>,
-        targets: &Bound<'py, PyAny>,
-    ) -> PyResult<Vec<FoundPath<'py>>> {
+        py: Python<'_>,
+        source: &Bound<'_, PyAny>,
+        targets: &Bound<'_, PyAny>,
+    ) -> PyResult<Vec<FoundPath>> {
         let (source, targets) = ([point_of(source)?], points_of(targets)?);
         let paths = self.solve(py, Method::Exact, |solver, _| {
             let inner = &self.inner;
@@ -367,25 +358,24 @@ impl Surface {
             let path = |target: &InputPoint| SurfacePath::trace(inner, &tracer, &source, *target);
             targets.iter().map(path).collect::<Result<Vec<_>, Error>>()
         })?;
-        let found = |path: canonform::geodesics::SurfacePath| {
-            let positions: Vec<_> = path.points.iter().map(|point| point.position).collect();
+        let found = |path: &SurfacePath| {
+            let places: Vec<_> = path.points.iter().map(|point| point.position).collect();
             let at = path.points.iter().map(|point| point.at.to_string()).collect();
             let along = path.points.iter().map(|point| point.distance).collect();
-            Ok((arrays::positions(py, &positions)?, at, along, path.length))
+            (positions(&places), at, along, path.length)
         };
-        paths.into_iter().map(found).collect()
+        Ok(paths.iter().map(found).collect())
     }
 
     /// Vertices spread evenly, each the farthest from those before it.
-    fn farthest_points<'py>(
+    fn farthest_points(
         &self,
-        py: Python<'py>,
+        py: Python<'_>,
         n: usize,
         first: Option<u32>,
         geodesic: Settings,
-    ) -> PyResult<Bound<'py, PyArray1<i64>>> {
-        let method = geodesic.distances()?;
-        let samples = self.solve(py, method, |solver, observer| {
+    ) -> PyResult<Vector<i64>> {
+        self.solve(py, geodesic.distances()?, |solver, observer| {
             let inner = &self.inner;
             let first = match first {
                 None => FirstSample::Farthest,
@@ -394,9 +384,8 @@ impl Surface {
             observer.begin("samples", n);
             let distances = Sampling::Farthest.start(solver, first, 0)?.into_distances(n)?;
             let input = |&v: &usize| i64::from(inner.input_vertex(VertexId::from(v)).0);
-            Ok(distances.landmarks().iter().map(input).collect::<Vec<_>>())
-        })?;
-        Ok(samples.into_pyarray(py))
+            Ok(Vector(distances.landmarks().iter().map(input).collect()))
+        })
     }
 
     /// The embedded surface.
@@ -422,13 +411,13 @@ impl Surface {
     fn signature<'py>(&self, py: Python<'py>, kind: &str, settings: Settings) -> PyResult<Bound<'py, PyAny>> {
         let measure = measure("kind", kind)?;
         let described = self.description_of(py, settings)?;
-        let values = match measure {
-            Measure::Fused => return Ok(described.fused.clone().into_pyarray(py).into_any()),
+        Ok(match measure {
+            Measure::Fused => described.fused.clone().into_pyarray(py).into_any(),
             Measure::Signature(kind) => {
-                canonform::embed::signature(&described, kind).map(|found| found.values)
+                let found = canonform::embed::signature(&described, kind);
+                found.map(|found| found.values).unwrap_or_default().into_pyarray(py).into_any()
             }
-        };
-        Ok(values.unwrap_or_default().into_pyarray(py).into_any())
+        })
     }
 }
 
@@ -440,6 +429,6 @@ pub(crate) fn write(
     faces: PyReadonlyArray2<'_, i64>,
     path: PathBuf,
 ) -> PyResult<()> {
-    let mesh = arrays::mesh_of(&vertices, &faces)?;
-    py.detach(|| canonform::mesh::io::write(&path, &mesh)).map_err(|fault| to_python(&fault.into()))
+    let mesh = mesh_of(&vertices, &faces)?;
+    raised(py.detach(|| canonform::mesh::io::write(&path, &mesh)))
 }

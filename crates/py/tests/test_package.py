@@ -135,7 +135,7 @@ def test_literals_are_what_rust_reports(tmp_path: Path) -> None:
         assert _possible(lambda keyword=keyword: _canonform.check_options({keyword: "?"})) == set(get_args(literal)), keyword
     assert list(get_args(_settings.SignatureKind)) == ["fused", *canonform.signature_kinds()]
     assert list(get_args(_settings.Family)) == list(canonform.datasets.families())
-    assert list(get_args(_settings.MeshFormat)) == _canonform.mesh_formats()
+    assert list(get_args(_settings.MeshFormat)) == _canonform.MESH_FORMATS
     shape = canonform.datasets.generate("cat", poses=1, n_vertices=1000)[0]
     index = canonform.Index.build([shape], tmp_path / "i.canonform")
     square = canonform.Surface(*grid())

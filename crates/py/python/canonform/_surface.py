@@ -54,7 +54,7 @@ def distance_methods() -> dict[str, str]:
     >>> sorted(canonform.distance_methods())
     ['bfs', 'dijkstra', 'exact', 'fast-marching', 'heat']
     """
-    return dict(_canonform.distance_methods())
+    return dict(_canonform.DISTANCE_METHODS)
 
 
 def embedding_methods() -> dict[str, str]:
@@ -63,7 +63,7 @@ def embedding_methods() -> dict[str, str]:
     >>> "smacof" in canonform.embedding_methods()
     True
     """
-    return dict(_canonform.embedding_methods())
+    return dict(_canonform.EMBEDDING_METHODS)
 
 
 def signature_kinds() -> list[str]:
@@ -72,7 +72,7 @@ def signature_kinds() -> list[str]:
     >>> "shape-dna" in canonform.signature_kinds()
     True
     """
-    return _canonform.signature_kinds()
+    return list(_canonform.SIGNATURE_KINDS)
 
 
 class RepairReport(dict[str, Any]):
