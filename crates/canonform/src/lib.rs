@@ -89,6 +89,7 @@ mod form;
 mod input;
 mod shape_index;
 mod side_by_side;
+mod watched;
 
 pub mod compare;
 
@@ -99,6 +100,7 @@ pub use form::{DescribeOptions, describe, settings};
 pub use index::Shape;
 pub use input::read_surface;
 pub use side_by_side::side_by_side;
+pub use watched::{Progress, Watched};
 pub use {collection, descriptors, fields, index, linalg, nmds, relations, retrieval, rigid, surface};
 
 /// From distances to coordinates, and what they tell of a shape.

@@ -6,19 +6,18 @@
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use base::{Budget, Exceeded};
 use canonform::library::ShapeLimits;
-use canonform::{Error, Observer};
+use canonform::{Error, Observer, Progress, Watched};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use crate::error::{Exception, to_python};
+use crate::error::{Exception, raised, to_python};
 use crate::settings::time_limit;
 
 /// Time between two looks for signals.
@@ -81,8 +80,7 @@ pub(crate) fn begin_call(
 #[pyfunction]
 pub(crate) fn check_call(py: Python<'_>, needed: usize) -> PyResult<()> {
     let budget = Keywords::current(py).budget;
-    let checked = budget.check().and_then(|()| budget.check_memory(needed));
-    checked.map_err(|fault| to_python(&fault.into()))
+    raised(budget.check().and_then(|()| budget.check_memory(needed)))
 }
 
 /// Ends the call that began last.
@@ -100,6 +98,17 @@ impl Keywords {
     fn cloned(&self, py: Python<'_>) -> Self {
         let progress = self.progress.as_ref().map(|progress| progress.clone_ref(py));
         Self { progress, budget: self.budget.clone(), threads: self.threads }
+    }
+
+    /// Handles signals, shows the progress of work, and looks at the clock for work whose budget does not.
+    fn look(&self, py: Python<'_>, watched: &Watched) -> PyResult<()> {
+        py.check_signals()?;
+        raised(self.budget.check())?;
+        let Progress { stage, done, total } = watched.progress();
+        if let Some(progress) = self.progress.as_ref().filter(|_| total > 0) {
+            progress.call1(py, (stage, done.min(total), total))?;
+        }
+        Ok(())
     }
 }
 
@@ -127,7 +136,7 @@ pub(crate) fn run_within<T: Send>(
     let over = |fault: Exceeded| Stopped::Interrupted(to_python(&fault.into()));
     call.budget.check().map_err(over)?;
     let pool = pool(call.threads).map_err(Stopped::Interrupted)?;
-    let watched = Watched { budget: budget.clone(), stage: Mutex::default(), done: AtomicUsize::new(0) };
+    let watched = Watched::new(budget.clone());
     let mut exception = None;
     let outcome = py.detach(|| {
         let (watched, exception) = (&watched, &mut exception);
@@ -142,7 +151,7 @@ pub(crate) fn run_within<T: Send>(
                     Err(RecvTimeoutError::Disconnected) => return None,
                     Err(RecvTimeoutError::Timeout) if exception.is_some() => {}
                     Err(RecvTimeoutError::Timeout) => {
-                        if let Err(raised) = Python::attach(|py| watched.look(py, &call)) {
+                        if let Err(raised) = Python::attach(|py| call.look(py, watched)) {
                             *exception = Some(raised);
                             watched.budget.cancel();
                         }
@@ -155,43 +164,6 @@ pub(crate) fn run_within<T: Send>(
         (_, Some(exception)) => Err(Stopped::Interrupted(exception)),
         (Some(result), None) => result.map_err(Stopped::Failed),
         (None, None) => unreachable!("a panic has left the scope"),
-    }
-}
-
-/// The state of some work, for the thread that waits for it.
-struct Watched {
-    budget: Budget,
-    stage: Mutex<(String, usize)>,
-    done: AtomicUsize,
-}
-
-impl Watched {
-    /// Handles signals, shows progress, and looks at the clock for work whose budget does not.
-    fn look(&self, py: Python<'_>, call: &Keywords) -> PyResult<()> {
-        py.check_signals()?;
-        call.budget.check().map_err(|fault| to_python(&fault.into()))?;
-        if let Some(progress) = &call.progress {
-            let (stage, total) = self.stage.lock().unwrap_or_else(PoisonError::into_inner).clone();
-            if total > 0 {
-                progress.call1(py, (stage, self.done.load(Ordering::Relaxed).min(total), total))?;
-            }
-        }
-        Ok(())
-    }
-}
-
-impl Observer for Watched {
-    fn budget(&self) -> Budget {
-        self.budget.clone()
-    }
-
-    fn begin(&self, stage: &str, total: usize) {
-        *self.stage.lock().unwrap_or_else(PoisonError::into_inner) = (stage.to_owned(), total);
-        self.done.store(0, Ordering::Relaxed);
-    }
-
-    fn step(&self) {
-        self.done.fetch_add(1, Ordering::Relaxed);
     }
 }
 

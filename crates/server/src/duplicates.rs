@@ -9,9 +9,8 @@ use axum::body::Bytes;
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use canonform::library::{DuplicateOptions, find_duplicates};
-use canonform::{Budget, Error, Observer};
+use canonform::{Error, Watched};
 use rayon::ThreadPoolBuilder;
-use serde::Serialize;
 
 use crate::collection::Collection;
 use crate::error::ApiError;
@@ -28,41 +27,12 @@ pub(crate) struct Duplicates {
     patience: Duration,
 }
 
-/// How far a search is.
-#[derive(Clone, Default, Serialize)]
-struct Progress {
-    stage: String,
-    done: usize,
-    total: usize,
-}
-
 struct Run {
     version: String,
     watched: Watched,
+    outcome: Arc<OnceLock<Result<Bytes, ApiError>>>,
     asked: Instant,
     _cancel: CancelOnDrop,
-}
-
-/// Keeps the progress of a search and its outcome, and cancels it.
-#[derive(Clone, Default)]
-struct Watched {
-    budget: Budget,
-    progress: Arc<Mutex<Progress>>,
-    outcome: Arc<OnceLock<Result<Bytes, ApiError>>>,
-}
-
-impl Observer for Watched {
-    fn budget(&self) -> Budget {
-        self.budget.clone()
-    }
-
-    fn begin(&self, stage: &str, total: usize) {
-        *lock(&self.progress) = Progress { stage: stage.to_owned(), done: 0, total };
-    }
-
-    fn step(&self) {
-        lock(&self.progress).done += 1;
-    }
 }
 
 impl Duplicates {
@@ -78,9 +48,9 @@ impl Duplicates {
             Some(run) => now.insert(Run { asked: Instant::now(), ..run }),
             None => now.insert(Run::start(collection.clone())?),
         };
-        match run.watched.outcome.get().cloned() {
+        match run.outcome.get().cloned() {
             None => {
-                let progress = Json(lock(&run.watched.progress).clone());
+                let progress = Json(run.watched.progress());
                 Ok((StatusCode::ACCEPTED, [(header::RETRY_AFTER, AGAIN)], progress).into_response())
             }
             Some(Ok(report)) => Ok(([(header::CONTENT_TYPE, "application/json")], report).into_response()),
@@ -94,8 +64,7 @@ impl Duplicates {
 
     /// Cancels a search that nobody waits for any more.
     pub(crate) fn cancel_unwanted(&self) {
-        let is_unwanted =
-            |run: &mut Run| run.watched.outcome.get().is_none() && run.asked.elapsed() > self.patience;
+        let is_unwanted = |run: &mut Run| run.outcome.get().is_none() && run.asked.elapsed() > self.patience;
         lock(&self.run).take_if(is_unwanted);
     }
 
@@ -107,17 +76,16 @@ impl Duplicates {
 
 impl Run {
     fn start(collection: Arc<Collection>) -> Result<Self, ApiError> {
-        let watched = Watched::default();
+        let (watched, outcome) = (Watched::default(), Arc::new(OnceLock::new()));
         let (version, asked) = (collection.version.clone(), Instant::now());
-        let run =
-            Self { version, watched: watched.clone(), asked, _cancel: CancelOnDrop(watched.budget.clone()) };
+        let _cancel = CancelOnDrop(watched.budget.clone());
+        let run = Self { version, watched: watched.clone(), outcome: outcome.clone(), asked, _cancel };
         // One thread leaves the others to requests.
         let pool = ThreadPoolBuilder::new().num_threads(1).stack_size(STACK).build();
         pool.map_err(|_| ApiError::internal())?.spawn(move || {
             // The message of a panic is already printed.
             let found = catch_unwind(AssertUnwindSafe(|| search(&collection, &watched)));
-            let outcome = found.unwrap_or_else(|_| Err(ApiError::internal()));
-            let _ = watched.outcome.set(outcome);
+            let _ = outcome.set(found.unwrap_or_else(|_| Err(ApiError::internal())));
         });
         Ok(run)
     }
@@ -148,7 +116,8 @@ mod tests {
             let watched = Watched::default();
             let asked = Instant::now().checked_sub(elapsed).unwrap_or_else(Instant::now);
             let _cancel = CancelOnDrop(watched.budget.clone());
-            let run = Run { version: String::new(), watched: watched.clone(), asked, _cancel };
+            let (version, outcome) = (String::new(), Arc::default());
+            let run = Run { version, watched: watched.clone(), outcome, asked, _cancel };
             let duplicates = Duplicates { run: Mutex::new(Some(run)), patience };
             duplicates.cancel_unwanted();
             assert_eq!(watched.budget.check().is_err(), is_cancelled);
