@@ -49,32 +49,47 @@ impl CompareParams {
         app.work.run(cost, None, job).await
     }
 
-    /// The error that there is no first shape, or two of them.
-    pub(super) fn not_two() -> ApiError {
-        ApiError::bad_request("give either an upload with `query` or a shape with `a`")
+    /// Both shapes.
+    pub(super) fn sides(
+        self,
+        app: &App,
+        collection: &Collection,
+        budget: &Budget,
+    ) -> Result<[ComparedShape; 2], ApiError> {
+        let of_shape = |name: String| -> Result<ComparedShape, Error> {
+            let shape = collection.search.prepared(&name)?;
+            let content = Some(collection.search.index().entry(&name)?.content);
+            match app.indexed(collection, &name, budget) {
+                Err(fault) if !is_missing(&fault) => Err(fault),
+                measured => Ok(ComparedShape { name, shape, measured, content }),
+            }
+        };
+        let a = match (self.query, self.a) {
+            (Some(query), None) => {
+                let query = app.query(collection, &query)?;
+                let shape = collection.search.prepared_query(&query.described)?;
+                let (name, content) = (query.described.name.clone(), query.described.content);
+                ComparedShape { name, shape, measured: Ok(query.measured.clone()), content }
+            }
+            (None, Some(id)) => of_shape(id)?,
+            _ => return Err(ApiError::bad_request("give either an upload with `query` or a shape with `a`")),
+        };
+        Ok([a, of_shape(self.b)?])
     }
 }
 
 /// One of the two shapes.
-struct ComparedShape {
+pub(super) struct ComparedShape {
+    pub(super) name: String,
     shape: PreparedShape,
-    /// None if the mesh is missing.
-    measured: Option<Arc<Measured>>,
+    /// An error if the mesh is missing.
+    pub(super) measured: Result<Arc<Measured>, Error>,
     content: Option<ContentHash>,
 }
 
 impl ComparedShape {
-    fn of_shape(app: &App, collection: &Collection, id: &str, budget: &Budget) -> Result<Self, Error> {
-        let shape = collection.search.prepared(id)?;
-        let content = Some(collection.search.index().entry(id)?.content);
-        match app.indexed(collection, id, budget) {
-            Err(fault) if !is_missing(&fault) => Err(fault),
-            measured => Ok(Self { shape, measured: measured.ok(), content }),
-        }
-    }
-
     fn compared(&self) -> Compared<'_> {
-        let (shape, measured) = (&self.shape, self.measured.as_deref());
+        let (shape, measured) = (&self.shape, self.measured.as_deref().ok());
         Compared {
             shape,
             reference: shape,
@@ -99,27 +114,14 @@ fn answer(
     params: CompareParams,
     budget: &Budget,
 ) -> Result<impl Serialize + use<>, ApiError> {
-    let (name, a) = match (params.query, params.a) {
-        (Some(query), None) => {
-            let query = app.query(collection, &query)?;
-            let shape = collection.search.prepared_query(&query.described)?;
-            let (measured, content) = (Some(query.measured.clone()), query.described.content);
-            (query.described.name.clone(), ComparedShape { shape, measured, content })
-        }
-        (None, Some(id)) => {
-            let side = ComparedShape::of_shape(app, collection, &id, budget)?;
-            (id, side)
-        }
-        _ => return Err(CompareParams::not_two()),
-    };
-    let b = ComparedShape::of_shape(app, collection, &params.b, budget)?;
+    let sides = params.sides(app, collection, budget)?;
     budget.check().map_err(ApiError::exceeded)?;
-    let [of_a, of_b] = [a.compared(), b.compared()];
+    let [of_a, of_b] = sides.each_ref().map(ComparedShape::compared);
     let dot = of_a.form.spread();
     let mut found = compare_meshes([of_a, of_b])?;
-    found.relation = found.relation.named(&name, &params.b);
-    let form = |i, side: &ComparedShape| overlaid(&found.overlay, i, side.measured.as_deref(), dot);
-    let forms = [form(0, &a), form(1, &b)];
+    let [a, b] = sides.each_ref().map(|side| &side.name);
+    found.relation = found.relation.named(a, b);
+    let forms = [0, 1].map(|i| overlaid(&found.overlay, i, sides[i].measured.as_deref().ok(), dot));
     budget.check().map_err(ApiError::exceeded)?;
     let laid = match (of_a.geometry, of_b.geometry) {
         (Some(a), Some(b)) => found.relation.overlay([a, b]),
@@ -129,8 +131,8 @@ fn answer(
     let gap = laid.map(|laid| Residual::new(&laid.gaps.concat()));
     let residual = found.overlay.residual();
     Ok(object! {
-        a: name,
-        b: params.b,
+        a: a.clone(),
+        b: b.clone(),
         #[serde(flatten)]
         found,
         // Of either form from the other, in units of the first mesh.

@@ -10,7 +10,7 @@ use canonform::maps::{CorrespondOptions, MappedSurface, correspond};
 use serde::Serialize;
 
 use super::answer::Params;
-use super::compare::CompareParams;
+use super::compare::{CompareParams, ComparedShape};
 use crate::app::App;
 use crate::collection::Collection;
 use crate::cost;
@@ -29,25 +29,15 @@ fn answer(
     params: CompareParams,
     budget: &Budget,
 ) -> Result<impl Serialize + use<>, ApiError> {
-    let (name, a) = match (params.query, params.a) {
-        (Some(query), None) => {
-            let query = app.query(collection, &query)?;
-            (query.described.name.clone(), query.measured.clone())
-        }
-        (None, Some(id)) => {
-            let measured = app.indexed(collection, &id, budget)?;
-            (id, measured)
-        }
-        _ => return Err(CompareParams::not_two()),
-    };
-    let b = app.indexed(collection, &params.b, budget)?;
-    let options = CorrespondOptions::default();
+    let [ComparedShape { name, measured: a, .. }, ComparedShape { name: other, measured: b, .. }] =
+        params.sides(app, collection, budget)?;
+    let (a, b, options) = (a?, b?, CorrespondOptions::default());
     let [from, to] = [&a, &b].map(|side| MappedSurface::new(&side.surface, &options, budget));
     let maps = correspond(&from?, &to?, &options, budget)?.maps;
     let carried = maps.first().map_or_else(|| a.mesh(), |map| a.carried(&b, map));
     Ok(object! {
         a: name,
-        b: params.b,
+        b: other,
         // From the first mesh to the second, at most two of different kinds: the direct one first, unless it distorts
         // distances clearly more.
         maps,
