@@ -100,32 +100,21 @@ impl RgbaImage {
     /// # Errors
     /// If the image has no pixels.
     pub fn to_png(&self) -> io::Result<Vec<u8>> {
-        let bytes = self.pixels.as_flattened();
-        Ok(encode_png(self.width, self.height, png::ColorType::Rgba, bytes)?)
+        let mut file = Vec::new();
+        let mut encoder = png::Encoder::new(&mut file, self.width, self.height);
+        encoder.set_color(png::ColorType::Rgba);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+        encoder.set_compression(png::Compression::Default);
+        encoder.set_adaptive_filter(png::AdaptiveFilterType::Adaptive);
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(self.pixels.as_flattened())?;
+        writer.finish()?;
+        Ok(file)
     }
 
     /// The image as the address of a PNG in a page.
     pub fn to_data_url(&self) -> io::Result<String> {
         Ok(format!("data:image/png;base64,{}", STANDARD.encode(self.to_png()?)))
     }
-}
-
-/// The bytes of a PNG file of 8-bit sRGB; `bytes` holds the channels of `color`, row by row.
-fn encode_png(
-    width: u32,
-    height: u32,
-    color: png::ColorType,
-    bytes: &[u8],
-) -> Result<Vec<u8>, png::EncodingError> {
-    let mut file = Vec::new();
-    let mut encoder = png::Encoder::new(&mut file, width, height);
-    encoder.set_color(color);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    encoder.set_compression(png::Compression::Default);
-    encoder.set_adaptive_filter(png::AdaptiveFilterType::Adaptive);
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(bytes)?;
-    writer.finish()?;
-    Ok(file)
 }

@@ -75,14 +75,6 @@ impl PlotAxis {
     pub(super) fn ends(&self) -> [f64; 2] {
         if self.scale == AxisScale::Log { self.range.map(|end| 10f64.powf(end)) } else { self.range }
     }
-
-    /// The label of a tick.
-    pub(super) fn label(&self, tick: f64) -> String {
-        self.ticks
-            .iter()
-            .find(|(value, _)| *value == tick)
-            .map_or_else(String::new, |(_, label)| label.clone())
-    }
 }
 
 /// A coordinate of plotters, with the ticks of the axis.
@@ -106,7 +98,8 @@ impl Ranged for PlotAxis {
 
 impl ValueFormatter<f64> for PlotAxis {
     fn format_ext(&self, tick: &f64) -> String {
-        self.label(*tick)
+        let found = self.ticks.iter().find(|(value, _)| value == tick);
+        found.map(|(_, label)| label.clone()).unwrap_or_default()
     }
 }
 

@@ -19,9 +19,9 @@ pub struct Geometry {
     /// The vertices of every face.
     #[serde(with = "words")]
     pub faces: Vec<[u32; 3]>,
-    /// A number per vertex, for its color; NaN if the vertex has none.
-    #[serde(with = "words", default, skip_serializing_if = "Option::is_none")]
-    pub values: Option<Vec<f32>>,
+    /// A number per vertex, for its color, or nothing; NaN if the vertex has none.
+    #[serde(with = "words", default, skip_serializing_if = "Vec::is_empty")]
+    pub values: Vec<f32>,
     /// The name and unit of the values, for the color bar.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub values_name: Option<String>,
@@ -65,6 +65,6 @@ impl Geometry {
     pub fn with_values(self, name: impl Into<String>, values: &[f64]) -> Self {
         let value = |v: usize| values.get(v).map_or(f32::NAN, |value| *value as f32);
         let values = (0..self.positions.len()).map(value).collect();
-        Self { values: Some(values), values_name: Some(name.into()), ..self }
+        Self { values, values_name: Some(name.into()), ..self }
     }
 }

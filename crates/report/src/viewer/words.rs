@@ -1,60 +1,30 @@
-//! Arrays of numbers as base64 of their little-endian bytes, for `#[serde(with = ...)]`: a quarter of the size of decimal text,
-//! and exact.
+//! Arrays of numbers of four bytes as base64 of their little-endian bytes, for `#[serde(with = ...)]`: a quarter of the size of
+//! decimal text, and exact.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use bytemuck::{AnyBitPattern, NoUninit, cast_slice, pod_read_unaligned};
 use serde::de::{Deserialize, Deserializer, Error};
 use serde::ser::Serializer;
 
-/// What can be written as numbers of four bytes.
-pub(super) trait Words: Sized {
-    /// The bytes, or nothing.
-    fn to_bytes(&self) -> Option<Vec<u8>>;
-    /// The value with these numbers; `None` if they are not whole groups.
-    fn from_words(words: &[[u8; 4]]) -> Option<Self>;
+pub(super) fn serialize<T: NoUninit, S: Serializer>(numbers: &[T], to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_str(&STANDARD.encode(little_endian(cast_slice(numbers).to_vec())))
 }
 
-macro_rules! words_of_triples {
-    ($($number:ty),+) => {$(
-        impl Words for Vec<[$number; 3]> {
-            fn to_bytes(&self) -> Option<Vec<u8>> {
-                Some(self.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect())
-            }
-
-            fn from_words(words: &[[u8; 4]]) -> Option<Self> {
-                let (triples, rest) = words.as_chunks();
-                rest.is_empty()
-                    .then(|| triples.iter().map(|triple| triple.map(<$number>::from_le_bytes)).collect())
-            }
-        }
-    )+};
-}
-
-words_of_triples!(f32, u32);
-
-impl Words for Option<Vec<f32>> {
-    fn to_bytes(&self) -> Option<Vec<u8>> {
-        Some(self.as_ref()?.iter().flat_map(|x| x.to_le_bytes()).collect())
-    }
-
-    fn from_words(words: &[[u8; 4]]) -> Option<Self> {
-        Some(Some(words.iter().map(|word| f32::from_le_bytes(*word)).collect()))
-    }
-}
-
-pub(super) fn serialize<T: Words, S: Serializer>(numbers: &T, to: S) -> Result<S::Ok, S::Error> {
-    match numbers.to_bytes() {
-        Some(bytes) => to.serialize_str(&STANDARD.encode(bytes)),
-        None => to.serialize_none(),
-    }
-}
-
-pub(super) fn deserialize<'de, T: Words, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
+pub(super) fn deserialize<'de, T: AnyBitPattern, D: Deserializer<'de>>(from: D) -> Result<Vec<T>, D::Error> {
     let text = <std::borrow::Cow<'de, str>>::deserialize(from)?;
     let bytes = STANDARD.decode(&*text).map_err(|fault| D::Error::custom(format!("not base64: {fault}")))?;
-    let (words, rest) = bytes.as_chunks();
-    let found = if rest.is_empty() { T::from_words(words) } else { None };
-    found.ok_or_else(|| {
-        D::Error::custom(format!("{} bytes are not a whole number of groups of numbers", bytes.len()))
-    })
+    if bytes.len() % size_of::<T>() > 0 {
+        let message = format!("{} bytes are not a whole number of groups of numbers", bytes.len());
+        return Err(D::Error::custom(message));
+    }
+    Ok(little_endian(bytes).chunks_exact(size_of::<T>()).map(pod_read_unaligned).collect())
+}
+
+/// Numbers of this machine as little-endian ones, and back.
+fn little_endian(mut bytes: Vec<u8>) -> Vec<u8> {
+    if cfg!(target_endian = "big") {
+        bytes.as_chunks_mut::<4>().0.iter_mut().for_each(|number| number.reverse());
+    }
+    bytes
 }

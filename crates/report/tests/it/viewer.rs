@@ -28,7 +28,7 @@ fn arrays_read_back_from_json_to_the_bit() {
     let json = serde_json::to_string(&one).unwrap();
     let back: Geometry = serde_json::from_str(&json).unwrap();
     assert_eq!((&back.positions, &back.faces), (&one.positions, &one.faces));
-    let bits = |g: &Geometry| g.values.iter().flatten().map(|v| v.to_bits()).collect::<Vec<_>>();
+    let bits = |g: &Geometry| g.values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&back), bits(&one), "NaN included");
     assert_eq!(back.values_name.as_deref(), Some("distance"));
     let bare = serde_json::to_value(Geometry::new(&triangle())).unwrap();
@@ -51,7 +51,7 @@ fn surfaces_are_centered_unusable_faces_are_left_out_and_missing_values_are_nan(
     mesh.faces.extend([[0, 1, 3], [0, 1, 9]].map(|f: [u32; 3]| f.map(VertexId)));
     let geometry = Geometry::new(&mesh).with_values("v", &[1.0]);
     assert_eq!(geometry.faces, [[0, 1, 2]]);
-    let values = geometry.values.unwrap();
+    let values = geometry.values;
     assert!(values.len() == 4 && values[0] == 1.0 && values[1..].iter().all(|v| v.is_nan()));
 }
 

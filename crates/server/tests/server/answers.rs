@@ -44,7 +44,7 @@ fn an_upload_finds_itself_in_every_format() {
         let (mesh, form) = (geometry(&json["mesh"]), geometry(&json["form"]));
         assert_eq!((mesh.positions.len(), mesh.faces.len()), (ring.n_vertices(), ring.n_faces()));
         assert_eq!((&mesh.faces, &mesh.values), (&form.faces, &form.values));
-        assert_eq!(mesh.values.unwrap().len(), ring.n_vertices());
+        assert_eq!(mesh.values.len(), ring.n_vertices());
     }
     let two = shapes::disjoint(&[ring, shapes::tetrahedron(0)]);
     let answer = upload(server.address, &[("q.ply", &written("q.ply", &two))], &[]).unwrap().json();
@@ -252,7 +252,7 @@ fn an_upload_can_be_compared_with_its_results() {
     for (key, value) in result["comparison"].as_object().unwrap() {
         assert_eq!(*value, json[key], "{key}");
     }
-    let largest = geometry(&json["forms"][1]).values.unwrap().into_iter().fold(0.0, f32::max);
+    let largest = geometry(&json["forms"][1]).values.into_iter().fold(0.0, f32::max);
     assert!((f64::from(largest) - json["residual"][1]["max"].as_f64().unwrap()).abs() < 1e-5, "{largest}");
     assert_eq!(geometry(&json["meshes"][0]).faces.len(), mesh.n_faces());
     assert!(json["gap"]["max"].as_f64().unwrap() < 1e-6, "{}", json["gap"]);
@@ -263,7 +263,7 @@ fn an_upload_can_be_compared_with_its_results() {
     let matched = told(&server, "get", "/api/match", 200, &matched);
     assert!(matched["maps"][0]["distortion"].as_f64().unwrap() < 0.05, "{}", matched["maps"]);
     // The first mesh has values of the second.
-    let values = [0, 1].map(|i| geometry(&matched["meshes"][i]).values.unwrap());
+    let values = [0, 1].map(|i| geometry(&matched["meshes"][i]).values);
     assert!(values[0].iter().all(|value| values[1].contains(value)));
     assert!(values[0].iter().any(|value| *value > 0.0));
 }
