@@ -8,9 +8,10 @@ use report::render::{Background, Coloring, Label, RenderOptions, Title, View, an
 use report::viewer::{self, Geometry};
 use report::{ReportError, RgbaImage};
 
-use crate::arrays;
+use crate::arrays::mesh_of;
 use crate::error::Exception;
 use crate::run::run;
+use crate::settings::chosen;
 
 /// How a picture is drawn.
 #[derive(FromPyObject)]
@@ -44,7 +45,7 @@ pub(crate) fn draw<'py>(
     marks: PyReadonlyArray2<'py, u8>,
     look: Look,
 ) -> PyResult<Bound<'py, PyBytes>> {
-    let mesh = arrays::mesh_of(&vertices, &faces)?;
+    let mesh = mesh_of(&vertices, &faces)?;
     let usual = RenderOptions::default();
     let coloring = match (values, colors) {
         (None, None) => usual.coloring,
@@ -61,7 +62,7 @@ pub(crate) fn draw<'py>(
         background: look.background.map_or(Background::Transparent, Background::Color),
         coloring,
         marks: marks.as_slice()?.as_chunks().0.to_vec(),
-        colors: look.colormap.parse().map_err(|fault: String| Exception::OptionError.with(&fault))?,
+        colors: chosen("colormap", &look.colormap)?,
         view: look.view.map_or(View::Principal, |[azimuth, elevation]| View::Upright {
             azimuth,
             elevation,
@@ -112,7 +113,7 @@ pub(crate) fn scene_page(
     title: &str,
     values_name: &str,
 ) -> PyResult<String> {
-    let mut geometry = Geometry::new(&arrays::mesh_of(&vertices, &faces)?);
+    let mut geometry = Geometry::new(&mesh_of(&vertices, &faces)?);
     if let Some(values) = values {
         geometry = geometry.with_values(values_name, values.as_slice()?);
     }

@@ -189,7 +189,7 @@ def test_compare_match_and_align_take_any_mesh(shapes: list[Shape], tmp_path: Pa
         (lambda s, i: i.duplicates(kinds=["x"]), OptionError, 'kinds="x" is not possible: use "identical-file"'),
         (lambda s, i: s.picture(width="x"), OptionError, "width='x'"),
         (lambda s, i: s.picture(view="above"), OptionError, "view='above'"),
-        (lambda s, i: s.picture(colormap="jet"), OptionError, "choose from viridis"),
+        (lambda s, i: s.picture(colormap="jet"), OptionError, 'use "viridis", "magma"'),
         (lambda s, i: s.picture(points=[99]), PointError, "99 is not a point"),
         (lambda s, i: canonform.FastMarching(update=3), OptionError, "update=3 is not possible: use text"),
         (lambda s, i: s.farthest_points(3, first=2**40), PointError, "1099511627776"),

@@ -1,15 +1,11 @@
 //! Color maps for numbers.
 
-use std::str::FromStr;
-
-use strum::VariantArray;
-
 use crate::color::{Rgb, perceptual};
 
 /// A color map for numbers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::IntoStaticStr, VariantArray)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize, strum::VariantArray)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-#[strum(serialize_all = "kebab-case")]
+#[serde(rename_all = "kebab-case")]
 pub enum ColorMap {
     /// Violet, green, yellow; equal steps look equal, also to color-blind readers
     #[default]
@@ -43,15 +39,5 @@ impl ColorMap {
             Self::Coolwarm => return colorous::RED_BLUE.eval_continuous(1.0 - at).into_array(),
         };
         gradient.eval_continuous(at).into_array()
-    }
-}
-
-impl FromStr for ColorMap {
-    type Err = String;
-
-    fn from_str(name: &str) -> Result<Self, String> {
-        let names: Vec<&str> = Self::VARIANTS.iter().map(|map| map.into()).collect();
-        let found = names.iter().position(|known| *known == name).map(|place| Self::VARIANTS[place]);
-        found.ok_or_else(|| format!("there is no color map `{name}`; choose from {}", names.join(", ")))
     }
 }

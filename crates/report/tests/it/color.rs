@@ -37,13 +37,11 @@ fn luminance(color: Rgb) -> f32 {
 }
 
 #[test]
-fn maps_read_back_by_name_and_have_their_ends() {
+fn maps_have_their_ends_and_show_what_is_missing() {
     for &map in ColorMap::VARIANTS {
-        assert_eq!(<&str>::from(map).parse::<ColorMap>(), Ok(map));
         assert_eq!([map.color(-1.0), map.color(f64::INFINITY)], [map.color(0.0), map.color(1.0)]);
         assert_eq!(map.color(f64::NAN), [160; 3]);
     }
-    assert!("jet".parse::<ColorMap>().unwrap_err().contains("viridis, magma"));
     assert_eq!([0.0, 1.0].map(|t| ColorMap::Magma.color(t)), [[0, 0, 4], [252, 253, 191]]);
 }
 
