@@ -4,12 +4,12 @@
 use std::io::Write;
 
 use anyhow::Result;
-use canonform::{DescribeOptions, Observer, Surface, describe};
+use canonform::Observer;
 use datasets::creature_plans;
 use descriptors::{Boundary, PreparedShape, Sample, ShapeMetric, ShapePair};
 use rayon::prelude::*;
 
-use super::{creature, held_out, print_reliability, rounded};
+use super::{creature, described, held_out, print_reliability, rounded};
 
 /// Vertices of the meshes.
 const VERTICES: [usize; 3] = [250, 1000, 5000];
@@ -47,7 +47,7 @@ struct CreaturePair {
     distance: f64,
 }
 
-fn described(n_plans: usize, number: usize) -> Result<Creature> {
+fn generated(n_plans: usize, number: usize) -> Result<Creature> {
     let (pose, rest) = (number % POSES, number / POSES);
     let (body, family) = (rest % BODIES, rest / BODIES);
     // An orthogonal array: in the nine families of a plan, any two of the four shapes have every two resolutions once.
@@ -55,10 +55,8 @@ fn described(n_plans: usize, number: usize) -> Result<Creature> {
     let shape = body * POSES + pose;
     let n_vertices = VERTICES[[i, j, i + j, i + 2 * j][shape] % VERTICES.len()];
     // The rest pose is left out, and no pose is there twice.
-    let mesh = creature(2, [family, body, 1 + shape], n_vertices)?;
-    let options = DescribeOptions::default();
-    let description = describe(&Surface::new(&mesh, &options.form.repair, &())?, &options, &())?;
-    Ok(Creature { plan: family % n_plans, family, body, shape: options.prepare(&description)? })
+    let (_, shape) = described(&creature(2, [family, body, 1 + shape], n_vertices)?)?;
+    Ok(Creature { plan: family % n_plans, family, body, shape })
 }
 
 /// All pairs of one family, and some of two.
@@ -99,7 +97,7 @@ pub(crate) fn print(observer: &dyn Observer, out: &mut impl Write) -> Result<()>
     observer.begin("describing creatures", n);
     let one = |number| {
         observer.step();
-        described(n_plans, number)
+        generated(n_plans, number)
     };
     let creatures = (0..n).into_par_iter().map(one).collect::<Result<Vec<_>>>()?;
     let chosen = pairs(&creatures);

@@ -8,15 +8,15 @@ use std::collections::BTreeMap;
 use std::io::Write;
 
 use anyhow::Result;
-use canonform::Observer;
+use canonform::{DescribeOptions, Observer, Shape, Surface, describe};
 use datasets::{CreatureOptions, creature_body};
-use descriptors::{Boundary, Sample};
+use descriptors::{Boundary, PreparedShape, Sample};
 use mesh::TriMesh;
 use rayon::prelude::*;
 
 use crate::families::coarse;
 
-pub(crate) use relations::{LEFT, Truth, beyond_a_plane, of_parts, related, relations};
+pub(crate) use relations::{LEFT, Truth, beyond_a_plane, geometry, of_parts, related, relations};
 pub(crate) use units::units;
 
 /// A body of a family of creatures in a pose, with about so many vertices.
@@ -24,6 +24,14 @@ fn creature(seed: u64, [family, body, pose]: [usize; 3], n_vertices: usize) -> R
     let options = CreatureOptions { seed, n_vertices: n_vertices.max(1000), ..Default::default() };
     let mesh = creature_body(family, body, pose, &options, &())?.mesh;
     Ok(if n_vertices < mesh.n_vertices() { coarse(&mesh, n_vertices) } else { mesh })
+}
+
+/// A mesh with its default description, as it is stored and ready for comparisons.
+fn described(mesh: &TriMesh) -> Result<(Shape, PreparedShape)> {
+    let options = DescribeOptions::default();
+    let description = describe(&Surface::new(mesh, &options.form.repair, &())?, &options, &())?;
+    let shape = options.prepare(&description)?;
+    Ok((description, shape))
 }
 
 /// As it is printed and used.

@@ -77,10 +77,9 @@ pub(crate) enum Truth {
 impl Truth {
     fn of(a: &MechanicalPart, b: &MechanicalPart) -> Self {
         let Some(differences) = a.differences(b) else { return Self::Other };
-        let ratio = |(x, y): (f64, f64)| y / x;
         let values =
             || a.parameters().into_iter().zip(b.parameters()).map(|((name, x), (_, y))| (name, (x, y)));
-        let lengths = || values().filter(|(name, _)| !is_count(name)).map(|(_, pair)| ratio(pair));
+        let lengths = || values().filter(|(name, _)| !is_count(name)).map(|(_, (x, y))| y / x);
         let is_one_size = lengths().all(|x| lengths().all(|y| (x / y - 1.0).abs() < 1e-9));
         let is_one_count = values().filter(|(name, _)| is_count(name)).all(|(_, (x, y))| x == y);
         // The other hand of a thread is its mirror image.
@@ -116,10 +115,14 @@ pub(crate) fn related(a: &MeshGeometry, b: &MeshGeometry) -> Relation {
     Relation::by_distance(near, 1.0, Handedness::Unknown).by_meshes([a, b])
 }
 
+/// A mesh in space, if it has an area.
+pub(crate) fn geometry(mesh: &TriMesh) -> Option<MeshGeometry> {
+    MeshGeometry::new(mesh, None)
+}
+
 /// All pairs of mechanical parts, and the first of them with copies of themselves.
 pub(crate) fn of_parts(seed: u64, n: usize, treated: usize, observer: &dyn Observer) -> Vec<RelatedPair> {
     let parts = mechanical_parts(seed, n);
-    let geometry = |mesh: &TriMesh| MeshGeometry::new(mesh, None);
     let own: Vec<_> = parts.par_iter().map(|part| geometry(&part.mesh(&PartMesh::default()))).collect();
     let own: Vec<MeshGeometry> = own.into_iter().flatten().collect();
     let pair = |[i, j]: [usize; 2], truth: Truth, other: &MeshGeometry| RelatedPair {
@@ -149,7 +152,6 @@ fn of_bodies(family: usize, observer: &dyn Observer) -> Result<Vec<RelatedPair>>
         |damages: &&[Damage]| damages.iter().fold(meshes[0].clone(), |mesh, damage| damage.apply(&mesh, 7));
     let pieces = LEFT.map(|left| Damage::Move.apply(&beyond_a_plane(&meshes[0], left), 7));
     let copies: Vec<TriMesh> = DAMAGES.iter().map(damaged).collect();
-    let geometry = |mesh: &TriMesh| MeshGeometry::new(mesh, None);
     let [own, copies, pieces] =
         [&meshes[..], &copies, &pieces].map(|all| all.iter().filter_map(geometry).collect::<Vec<_>>());
     let pair = |truth: Truth, a: &MeshGeometry, b: &MeshGeometry| RelatedPair {

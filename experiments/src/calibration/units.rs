@@ -7,14 +7,14 @@ use anyhow::Result;
 use base::terminal::Bars;
 use canonform::embed::signature;
 use canonform::index::Shape;
-use canonform::{DescribeOptions, Observer, Surface, describe};
+use canonform::{Observer, Surface};
 use datasets::{ArticulatedOptions, Family, LabeledShape, articulated};
 use descriptors::{PreparedShape, ShapeMetric, ShapePair, SignatureKind, rigid_signature};
 use linalg::Matrix;
 use rayon::prelude::*;
 use report::{Cell, Table};
 
-use super::boundaries;
+use super::{boundaries, described};
 use crate::parts::parts;
 
 /// Vertices of the shapes of each seed, from 1 on, since collections mix resolutions.
@@ -32,15 +32,6 @@ struct DescribedBody {
     shape: PreparedShape,
 }
 
-impl DescribedBody {
-    fn new(shape: &LabeledShape, seed: u64) -> Result<Self> {
-        let options = DescribeOptions::default();
-        let description = describe(&Surface::new(&shape.mesh, &options.form.repair, &())?, &options, &())?;
-        let prepared = options.prepare(&description)?;
-        Ok(Self { label: shape.label.clone(), seed, description, shape: prepared })
-    }
-}
-
 /// `experiments units`: for every signature and for aligned forms, the root mean square distance between two shapes of
 /// one built-in family with poses and triangulations of their own, and the ratio of the mean squared distance between
 /// families to its square, next to the values in use; then the boundaries of shapes and classes.
@@ -50,7 +41,10 @@ pub(crate) fn units() -> Result<ExitCode> {
     bars.begin("describing", 0);
     for (seed, n_vertices) in (1..).zip(VERTICES) {
         let options = ArticulatedOptions { seed, n_vertices };
-        let one = |shape: &LabeledShape| DescribedBody::new(shape, options.seed);
+        let one = |LabeledShape { label, mesh, .. }: &LabeledShape| {
+            let (description, shape) = described(mesh)?;
+            Ok(DescribedBody { label: label.clone(), seed, description, shape })
+        };
         shapes.extend(articulated(&options)?.par_iter().map(one).collect::<Result<Vec<_>>>()?);
     }
     let (within, between): (Vec<BodyPair<'_>>, Vec<BodyPair<'_>>) = shapes

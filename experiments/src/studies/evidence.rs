@@ -5,14 +5,13 @@
 //! confidence`, over bins of at least [`FEWEST`] relations.
 
 use anyhow::Result;
-use canonform::relations::{MeshGeometry, Relation, RelationKind};
+use canonform::relations::{Relation, RelationKind};
 use datasets::Damage;
 use descriptors::Sample;
-use mesh::TriMesh;
 use rayon::prelude::*;
 use report::Record;
 
-use crate::calibration::{LEFT, Truth, beyond_a_plane, of_parts, related, reliability};
+use crate::calibration::{LEFT, Truth, beyond_a_plane, geometry, of_parts, related, reliability};
 use crate::context::Context;
 use crate::sweep::{numbers, share};
 
@@ -44,10 +43,6 @@ pub(crate) fn evidence(context: &Context<'_>) -> Result<Record> {
     Ok(context.record(&[], measured))
 }
 
-fn geometry(mesh: &TriMesh) -> Option<MeshGeometry> {
-    MeshGeometry::new(mesh, None)
-}
-
 /// Shapes of the collection beside pieces of them, moved.
 fn cuts(context: &Context<'_>) -> Vec<Relation> {
     let shapes = context.collection.first_of_each_class(1);
@@ -62,6 +57,7 @@ fn cuts(context: &Context<'_>) -> Vec<Relation> {
 
 #[cfg(test)]
 mod tests {
+    use canonform::relations::MeshGeometry;
     use datasets::{MechanicalPart, PartMesh, mechanical_parts};
 
     use super::*;
