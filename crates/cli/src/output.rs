@@ -83,6 +83,11 @@ pub(crate) fn shown(path: &Path) -> String {
     if is_stream(path) { "standard output".to_owned() } else { base::one_line(&name).into_owned() }
 }
 
+/// The word for a value of an enum, as in JSON.
+pub(crate) fn word(value: impl Serialize) -> String {
+    serde_json::to_value(value).ok().and_then(|word| word.as_str().map(str::to_owned)).unwrap_or_default()
+}
+
 /// A number with a noun in the singular or in the plural.
 pub(crate) fn count(n: usize, noun: &str) -> String {
     let plural = if noun.ends_with('s') { "es" } else { "s" };

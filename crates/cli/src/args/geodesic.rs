@@ -8,7 +8,7 @@ use canonform::settings::{Geodesic, MarchingSettings};
 use clap::Args;
 
 use super::settings::RepairArgs;
-use super::shared::LimitArgs;
+use super::shared::{LimitArgs, read};
 
 /// How points are written.
 const POINTS: &str = "\
@@ -83,8 +83,6 @@ fn output_help() -> String {
 }
 
 fn parse_distance(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(distance) if distance >= 0.0 => Ok(distance),
-        _ => Err(format!("`{text}` is not a distance; give a non-negative number of mesh units")),
-    }
+    let distance = text.parse().ok().filter(|distance| *distance >= 0.0);
+    read(text, distance, "a distance; give a non-negative number of mesh units")
 }

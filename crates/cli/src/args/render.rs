@@ -9,7 +9,7 @@ use report::color::ColorMap;
 use report::render::{Background, View};
 
 use super::settings::RepairArgs;
-use super::shared::{LimitArgs, counted};
+use super::shared::{LimitArgs, counted, read};
 
 /// How views and fields are written.
 const NOTES: &str = "\
@@ -99,14 +99,10 @@ const SIDES: std::ops::RangeInclusive<u32> = 16..=4096;
 fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let side = |text: &str| text.parse().ok().filter(|side| SIDES.contains(side));
     let (width, height) = text.split_once(['x', 'X']).unwrap_or((text, text));
-    match (side(width), side(height)) {
-        (Some(width), Some(height)) => Ok([width, height]),
-        _ => Err(format!(
-            "`{text}` is not a picture size; write for example 800x600, each side from {} to {} pixels",
-            SIDES.start(),
-            SIDES.end()
-        )),
-    }
+    let size = side(width).zip(side(height)).map(<[u32; 2]>::from);
+    let (least, most) = (SIDES.start(), SIDES.end());
+    let what = format!("a picture size; write for example 800x600, each side from {least} to {most} pixels");
+    read(text, size, &what)
 }
 
 fn pair(text: &str) -> Option<[f64; 2]> {
@@ -114,6 +110,9 @@ fn pair(text: &str) -> Option<[f64; 2]> {
     let number = |text: &str| text.trim().parse().ok().filter(|x: &f64| x.is_finite());
     Some([number(a)?, number(b)?])
 }
+
+const VIEWS: &str =
+    "a view; give front, back, left, right, top, bottom, principal or two angles in degrees such as 30,12";
 
 fn parse_view(text: &str) -> Result<View, String> {
     let [azimuth, elevation] = match text {
@@ -124,40 +123,31 @@ fn parse_view(text: &str) -> Result<View, String> {
         "left" => [270.0, 0.0],
         "top" => [0.0, 90.0],
         "bottom" => [0.0, -90.0],
-        _ => pair(text).ok_or_else(|| {
-            format!(
-                "`{text}` is not a view; give front, back, left, right, top, bottom, principal or two angles in \
-                 degrees such as 30,12"
-            )
-        })?,
+        _ => read(text, pair(text), VIEWS)?,
     };
     Ok(View::Upright { azimuth, elevation, up: [0.0, 0.0, 1.0].into() })
 }
 
 fn parse_range(text: &str) -> Result<[f64; 2], String> {
-    match pair(text) {
-        Some([low, high]) if low < high => Ok([low, high]),
-        _ => Err(format!("`{text}` is not a range; give the smallest and the largest value, such as 0,80")),
-    }
+    let range = pair(text).filter(|[low, high]| low < high);
+    read(text, range, "a range; give the smallest and the largest value, such as 0,80")
 }
 
 fn parse_color(text: &str) -> Result<[u8; 3], String> {
     let digits = text.strip_prefix('#').unwrap_or(text);
     let is_hex = digits.len() == 6 && digits.bytes().all(|b| b.is_ascii_hexdigit());
     let color = u32::from_str_radix(digits, 16).ok().filter(|_| is_hex);
-    let [_, channels @ ..] = color
-        .map(u32::to_be_bytes)
-        .ok_or_else(|| format!("`{text}` is not a color; write it as #rrggbb, such as #3b6ea5"))?;
-    Ok(channels)
+    let channels = color.map(u32::to_be_bytes).map(|[_, channels @ ..]| channels);
+    read(text, channels, "a color; write it as #rrggbb, such as #3b6ea5")
 }
+
+const BACKGROUNDS: &str = "a background; give white, dark, transparent or a color such as #f4f1ea";
 
 fn parse_background(text: &str) -> Result<Background, String> {
     match text {
         "white" => Ok(Background::WHITE),
         "dark" => Ok(Background::Color([24, 26, 31])),
         "transparent" => Ok(Background::Transparent),
-        _ => parse_color(text).map(Background::Color).map_err(|_| {
-            format!("`{text}` is not a background; give white, dark, transparent or a color such as #f4f1ea")
-        }),
+        _ => read(text, parse_color(text).ok().map(Background::Color), BACKGROUNDS),
     }
 }

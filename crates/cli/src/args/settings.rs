@@ -10,7 +10,7 @@ use canonform::settings::{
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Command};
 
-use super::shared::Common;
+use super::shared::{Common, read};
 
 /// A setting with the values that it may have, as on the command line.
 pub(crate) fn spelled(name: &str, values: &[&str]) -> String {
@@ -56,7 +56,7 @@ pub(crate) const MAX_DROPPED: f64 = 0.01;
 
 fn share(text: &str) -> Result<f64, String> {
     let share = text.parse().ok().filter(|share| (0.0..=1.0).contains(share));
-    share.ok_or_else(|| format!("`{text}` is not a share of the surface; give a number from 0 to 1"))
+    read(text, share, "a share of the surface; give a number from 0 to 1")
 }
 
 impl RepairArgs {

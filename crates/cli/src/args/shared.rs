@@ -35,9 +35,14 @@ pub(crate) struct Common {
     pub(crate) quiet: bool,
 }
 
+/// What a text was read as, or the error that it is not `what`.
+pub(super) fn read<T>(text: &str, found: Option<T>, what: &str) -> Result<T, String> {
+    found.ok_or_else(|| format!("`{text}` is not {what}"))
+}
+
 /// Reads the number of a vertex or a row.
 pub(super) fn counted<T: FromStr>(text: &str) -> Result<T, String> {
-    text.parse().map_err(|_| format!("`{text}` is not a whole number, counted from 0"))
+    read(text, text.parse().ok(), "a whole number, counted from 0")
 }
 
 /// More threads than this do not help on any machine, and starting them may fail.
@@ -77,27 +82,18 @@ impl LimitArgs {
 fn parse_seconds(text: &str) -> Result<Duration, String> {
     let seconds = text.parse().ok().filter(|seconds| *seconds > 0.0);
     let limit = seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
-    limit
-        .ok_or_else(|| format!("`{text}` is not a time limit; give a positive number of seconds, such as 60"))
+    read(text, limit, "a time limit; give a positive number of seconds, such as 60")
 }
 
 /// A number of bytes; K, M, G and T are powers of 1024.
 pub(super) fn parse_bytes(text: &str) -> Result<usize, String> {
-    let wrong = || format!("`{text}` is not a memory size; write for example 800M or 2G");
-    let (number, unit) = match text.find(|c: char| !c.is_ascii_digit()) {
-        Some(end) => text.split_at(end),
-        None => (text, ""),
-    };
-    let power = match unit.to_ascii_uppercase().trim_end_matches("IB").trim_end_matches('B') {
-        "" => 0,
-        "K" => 1,
-        "M" => 2,
-        "G" => 3,
-        "T" => 4,
-        _ => return Err(wrong()),
-    };
-    let number: usize = number.parse().map_err(|_| wrong())?;
-    number.checked_mul(1 << (10 * power)).ok_or_else(wrong)
+    let (number, unit) = text.split_at(text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len()));
+    let unit = unit.to_ascii_uppercase();
+    let unit = unit.trim_end_matches("IB").trim_end_matches('B');
+    let power = ["", "K", "M", "G", "T"].iter().position(|known| *known == unit);
+    let number = number.parse::<usize>().ok().zip(power);
+    let bytes = number.and_then(|(number, power)| number.checked_mul(1 << (10 * power)));
+    read(text, bytes, "a memory size; write for example 800M or 2G")
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use canonform::surface::VertexId;
 
 use crate::args::{Common, FieldBuildArgs, FieldCommand, FieldQueryArgs, geodesic_method};
 use crate::input::{named, read_surface};
-use crate::output::{Answer, check_output, report};
+use crate::output::{Answer, check_output, report, word};
 use crate::table::{read_pairs, write_npy};
 
 pub(crate) fn field(command: &FieldCommand, common: &Common) -> Result<ExitCode> {
@@ -123,8 +123,8 @@ fn query(args: &FieldQueryArgs, common: &Common) -> Result<ExitCode> {
             ));
         }
         for pair in &json.pairs {
-            let PairDistance { a, b, distance, lower, upper, .. } = pair;
-            lines.push(format!("{a:>8} {b:>8} {distance:>12.6} {lower:>12.6} {upper:>12.6}  {}", kind(pair)));
+            let PairDistance { a, b, distance, lower, upper, kind } = pair;
+            lines.push(format!("{a:>8} {b:>8} {distance:>12.6} {lower:>12.6} {upper:>12.6}  {}", word(kind)));
         }
         let dropped =
             if json.dropped > 0 { format!(", {} of dropped vertices", json.dropped) } else { String::new() };
@@ -154,14 +154,6 @@ fn looked_up(
     Ok(found)
 }
 
-fn kind(pair: &PairDistance) -> &'static str {
-    match pair.kind {
-        PairKind::Estimated => "estimated",
-        PairKind::Exact => "exact",
-        PairKind::Dropped => "dropped",
-    }
-}
-
 fn write(path: &Path, found: &[PairDistance]) -> Result<()> {
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("npy")) {
         let row = |pair: &PairDistance| {
@@ -172,8 +164,8 @@ fn write(path: &Path, found: &[PairDistance]) -> Result<()> {
     Ok(base::files::write_atomically(path, |out| {
         writeln!(out, "a,b,distance,lower,upper,kind")?;
         for pair in found {
-            let PairDistance { a, b, distance, lower, upper, .. } = pair;
-            writeln!(out, "{a},{b},{distance},{lower},{upper},{}", kind(pair))?;
+            let PairDistance { a, b, distance, lower, upper, kind } = pair;
+            writeln!(out, "{a},{b},{distance},{lower},{upper},{}", word(kind))?;
         }
         Ok(())
     })?)

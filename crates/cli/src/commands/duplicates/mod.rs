@@ -22,7 +22,7 @@ use canonform::search::ShapeSearch;
 use self::shown::{moved, page, text};
 use super::index::skipped;
 use crate::args::{Common, DuplicatesArgs, keep_inputs};
-use crate::output::{check_output, exit_code, report};
+use crate::output::{check_output, exit_code, report, word};
 
 /// Finds the files of an index or a dataset that hold one shape, and moves them if asked to.
 pub(crate) fn duplicates(args: &DuplicatesArgs, common: &Common) -> Result<ExitCode> {
@@ -126,14 +126,13 @@ fn csv(report: &DuplicateReport) -> String {
         line("keep", keeper, "", "", why);
         for member in members {
             let told = &member.relation;
-            let kind = serde_json::to_value(told.kind).unwrap_or_default();
-            let confidence = format!("{:.3}", told.confidence);
+            let (kind, confidence) = (word(told.kind), format!("{:.3}", told.confidence));
             let role = match (member.file.reference, member.is_spare()) {
                 (true, _) => "reference",
                 (false, true) => "spare",
                 (false, false) => "related",
             };
-            line(role, &member.file, kind.as_str().unwrap_or_default(), &confidence, &told.to_string());
+            line(role, &member.file, &kind, &confidence, &told.to_string());
         }
     }
     text

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use canonform::embed::EmbedReport;
 use canonform::mesh::InputPoint;
-use canonform::nmds::{SampleStop, SmacofStop};
+use canonform::nmds::SampleStop;
 use serde::Serialize;
 
-use crate::output::{Answer, shown};
+use crate::output::{Answer, shown, word};
 
 /// A form that was written.
 #[derive(Serialize)]
@@ -71,13 +71,10 @@ fn samples_text(report: &EmbedReport) -> String {
 fn method_text(report: &EmbedReport) -> String {
     let regularization = report.regularization.map_or(String::new(), |name| format!(" ({name})"));
     let sampling = report.sampling.map_or(String::new(), |name| format!(", {name} samples"));
-    let descent = report.descent.as_ref().map_or(String::new(), |descent| {
-        let stop = match descent.stop {
-            SmacofStop::Converged => "converged",
-            SmacofStop::IterationLimit => "iteration-limit",
-        };
-        format!(", {} steps ({stop})", descent.iterations)
-    });
+    let descent = report
+        .descent
+        .as_ref()
+        .map_or(String::new(), |descent| format!(", {} steps ({})", descent.iterations, word(descent.stop)));
     format!("{}{regularization} on {} distances{sampling}{descent}", report.method, report.geodesic)
 }
 
