@@ -25,8 +25,8 @@ pub(crate) enum FieldCommand {
 /// What the choice of the method means.
 const METHODS: &str = "\
 Every distance comes with an interval, lower <= distance <= upper. With --method exact the interval is certified: the true
-distance along the surface cannot lie outside. It takes about four times as long. With other methods it is measured: four columns are
-exact, and twice the largest error of the method in them widens the intervals.
+distance along the surface cannot lie outside. That takes about four times as long. With other methods the interval is
+measured: four columns are exact, and twice the largest error of the method in them widens all intervals.
 
 Examples:
   canonform field build cat.off -o cat.field
@@ -62,8 +62,8 @@ const ANSWERS: &str = "\
 A file of pairs has two vertex numbers in every line, separated by a comma or spaces; or it is a .npy array of two columns.
 Vertices have the numbers of the mesh file, counted from 0.
 
-An answer is `estimated`, `exact` (finished by propagation on the surface), or `dropped` if the repair dropped one of the vertices;
-its distances are then infinite.
+An answer is `estimated`, `exact` (finished by propagation on the surface), or `dropped` if the repair dropped one of the
+vertices; its distances are then infinite.
 
 Examples:
   canonform field query cat.field --pairs pairs.csv -o distances.csv

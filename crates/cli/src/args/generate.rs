@@ -8,10 +8,10 @@ use clap::{Args, ValueEnum};
 
 /// Where the shapes go.
 const NOTES: &str = "\
-Shapes of the families cat, centaur, david and person are written to FOLDER/NAME.EXT, creatures to
-FOLDER/CLASS/NAME.EXT; both are datasets for `canonform index build`. The default seed gives the shapes that the
-experiments use. Files that are there already are replaced. Mechanical parts go to FOLDER/FAMILY-PARAMETERS.EXT, such as gear-z18-m1-t5-d4.off; --vertices
-and --poses do not concern them.
+Shapes of the families cat, centaur, david and person are written to FOLDER/NAME.EXT, creatures to FOLDER/CLASS/NAME.EXT,
+and mechanical parts to FOLDER/FAMILY-PARAMETERS.EXT, such as gear-z18-m1-t5-d4.off. All are datasets for `canonform index
+build`. The default seed gives the shapes of the experiments. Existing files are replaced. --vertices and --poses do not
+concern mechanical parts.
 
 Examples:
   canonform generate -o shapes/

@@ -125,7 +125,7 @@ pub(crate) enum Command {
     Info(InfoArgs),
     /// Measure distances and shortest paths along a surface
     Geodesic(GeodesicArgs),
-    /// Hold the distances between all pairs of vertices in little memory, with bounds
+    /// Store the distances between all pairs of vertices in little memory, with bounds
     #[command(subcommand)]
     Field(FieldCommand),
     /// Compute the canonical form of a mesh, or of every mesh of a folder or an archive
@@ -158,7 +158,7 @@ pub(crate) enum Command {
     Evaluate(EvaluateArgs),
     /// Serve an index to browsers: drop a mesh and see the most similar shapes
     Serve(ServeArgs),
-    /// Write built-in shapes as mesh files: cats, centaurs, men, or random creatures in different poses
+    /// Write built-in shapes as mesh files: cats, centaurs, men, random creatures or mechanical parts
     Generate(GenerateArgs),
     /// Print a completion script for a shell
     Completions {

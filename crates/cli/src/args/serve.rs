@@ -27,7 +27,7 @@ pub(crate) struct ServeArgs {
     /// Time limit of a request, in seconds
     #[arg(long, value_name = "S", default_value_t = 60, value_parser = clap::value_parser!(u64).range(1..=3600))]
     pub(crate) time_limit: u64,
-    /// Requests to process at once; one of several places is kept for short ones [default: one more than there are cores]
+    /// Requests to process at once; of several places one is kept for short ones [default: one more than there are cores]
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
     pub(crate) jobs: usize,
 }

@@ -8,8 +8,9 @@ use canonform::library::ShapeLimits;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
-/// Options of every command.
+/// Options of every command, listed after its own.
 #[derive(Debug, Clone, Args)]
+#[command(next_display_order = 900)]
 pub(crate) struct Common {
     /// Print one JSON object to standard output and nothing else
     #[arg(long, global = true)]
@@ -23,8 +24,7 @@ pub(crate) struct Common {
     /// Seed for everything random
     #[arg(long, global = true, default_value_t = 0, value_name = "S")]
     pub(crate) seed: u64,
-    /// Format of a mesh from standard input, which the mesh argument `-` stands for; without `-`, for `embed`, the format
-    /// of forms in a folder
+    /// Format of a mesh from standard input, the mesh `-`; for `embed` without `-`, the format of forms in a folder
     #[arg(long, global = true, value_name = "EXT")]
     pub(crate) format: Option<String>,
     /// The same, where --format means something else

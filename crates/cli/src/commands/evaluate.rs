@@ -58,7 +58,7 @@ fn answer(IndexEvaluation { scores, agreement }: &IndexEvaluation) -> Answer {
     let [nn, first_tier, second_tier, e, dcg, map, votes] = column(&scores.plain, scores.knn_k);
     let explained = |(name, value): Fact, words: &str| (name, format!("{value}: {words}"));
     let mut facts = vec![
-        explained(first_tier, "of as many shapes as the class has, those of the class"),
+        explained(first_tier, "share of the class among as many results as it has shapes"),
         explained(map, "1 if every shape finds its whole class first"),
         votes,
         ("silhouette", format!("{:.4}: from -1 to 1, above 0 if classes are apart", scores.silhouette)),
