@@ -34,16 +34,6 @@ fn partners_of(numbers: &PyReadonlyArray1<'_, i64>) -> PyResult<Vec<Option<Verte
     numbers.as_slice()?.iter().map(partner).collect()
 }
 
-fn known(
-    landmarks: &Pairs<'_>,
-    initial: Option<PyReadonlyArray1<'_, i64>>,
-    functions: Option<Functions<'_>>,
-) -> PyResult<KnownMap> {
-    let initial = initial.as_ref().map(partners_of).transpose()?.unwrap_or_default();
-    let functions = functions.map(|(f, g)| [matrix_of(&f), matrix_of(&g)]);
-    Ok(KnownMap { landmarks: pairs_of(landmarks)?, initial, functions })
-}
-
 fn arrays_of(map: &SurfaceMap) -> MapArrays {
     let number = |v: &Option<VertexId>| v.map_or(-1, |v| i64::from(v.0));
     let numbers = |partners: &[Option<VertexId>]| Vector(partners.iter().map(number).collect());
@@ -67,7 +57,9 @@ pub(crate) fn match_surfaces(
 ) -> PyResult<Maps> {
     let [of_a, of_b] =
         [settings.correspond(a.inner.input.repair)?, settings.correspond(b.inner.input.repair)?];
-    let known = known(&landmarks, initial, functions)?;
+    let initial = initial.as_ref().map(partners_of).transpose()?.unwrap_or_default();
+    let functions = functions.map(|(f, g)| [matrix_of(&f), matrix_of(&g)]);
+    let known = KnownMap { landmarks: pairs_of(&landmarks)?, initial, functions };
     let (found, colors) = run(py, |observer| {
         let sides = [a.matched(&of_a, observer)?, b.matched(&of_b, observer)?];
         let options = CorrespondOptions { known, ..of_a };

@@ -39,31 +39,23 @@ const MAP_SIZE: [f64; 2] = [PAGE_WIDTH as f64 / 2.0 - LEFT - RIGHT, HEIGHT];
 const MARKERS: [(u32, f64, f64); 5] =
     [(24, 0.0, 0.95), (3, 90.0, 1.25), (4, 45.0, 1.2), (4, 0.0, 1.25), (3, -90.0, 1.25)];
 
-/// The look of series number `n`: five markers and eight colors. The first 40 differ in the pair, neighbors in both.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct SeriesStyle(usize);
-
-impl SeriesStyle {
-    fn color(self) -> Rgb {
-        class_color(self.0)
-    }
-
-    /// The marker around its point: the rim, and the face over it, as plotters strokes small outlines unevenly.
-    fn marker(self, kind: SeriesKind) -> (Polygon<Pixels>, Polygon<Pixels>) {
-        let (rim, fill) = match kind {
-            SeriesKind::Hollow => (self.color(), [255; 3]),
-            SeriesKind::Curve | SeriesKind::Filled => (mix(self.color(), [0; 3], 0.5), self.color()),
+/// The marker of series number `n` around its point: the rim, and the face over it, as plotters strokes small outlines unevenly.
+/// There are five markers and eight colors: the first 40 series differ in the pair, neighbors in both.
+fn marker(n: usize, kind: SeriesKind) -> (Polygon<Pixels>, Polygon<Pixels>) {
+    let color = class_color(n);
+    let (rim, fill) = match kind {
+        SeriesKind::Hollow => (color, [255; 3]),
+        SeriesKind::Curve | SeriesKind::Filled => (mix(color, [0; 3], 0.5), color),
+    };
+    let (corners, first, long) = MARKERS[n % MARKERS.len()];
+    let outline = |radius: f64, color: Rgb| {
+        let corner = |i| {
+            let (sin, cos) = (first + 360.0 * f64::from(i) / f64::from(corners)).to_radians().sin_cos();
+            (px(cos * long * radius), -px(sin * long * radius))
         };
-        let (corners, first, long) = MARKERS[self.0 % MARKERS.len()];
-        let outline = |radius: f64, color: Rgb| {
-            let corner = |i| {
-                let (sin, cos) = (first + 360.0 * f64::from(i) / f64::from(corners)).to_radians().sin_cos();
-                (px(cos * long * radius), -px(sin * long * radius))
-            };
-            Polygon::new((0..corners).map(corner).collect::<Vec<_>>(), rgb(color).filled())
-        };
-        (outline(RADIUS + RIM, rim), outline(RADIUS, fill))
-    }
+        Polygon::new((0..corners).map(corner).collect::<Vec<_>>(), rgb(color).filled())
+    };
+    (outline(RADIUS + RIM, rim), outline(RADIUS, fill))
 }
 
 /// The plots of a figure, and the names of their series, whose numbers decide the look.
@@ -82,8 +74,8 @@ impl<'a> Plots<'a> {
         self.plots.len().clamp(1, 2)
     }
 
-    fn style(&self, series: &Series) -> SeriesStyle {
-        SeriesStyle(self.names.iter().position(|name| *name == series.name).unwrap_or(0))
+    fn number(&self, series: &Series) -> usize {
+        self.names.iter().position(|name| *name == series.name).unwrap_or(0)
     }
 
     /// One entry per name and kind of series, and the number of them in a line.
@@ -91,7 +83,7 @@ impl<'a> Plots<'a> {
         let mut entries: Vec<LegendEntry> = Vec::new();
         for series in self.plots.iter().flat_map(|plot| &plot.series) {
             let printed = if series.kind == SeriesKind::Hollow { ", paper" } else { "" };
-            let entry = (format!("{}{printed}", series.name), self.style(series), series.kind);
+            let entry = (format!("{}{printed}", series.name), self.number(series), series.kind);
             if !entries.contains(&entry) {
                 entries.push(entry);
             }
@@ -108,8 +100,8 @@ impl<'a> Plots<'a> {
     }
 }
 
-/// The name, look and kind of a series.
-type LegendEntry = (String, SeriesStyle, SeriesKind);
+/// The name, number and kind of a series.
+type LegendEntry = (String, usize, SeriesKind);
 
 fn name_width(name: &str) -> f64 {
     text_width(name, &text(NAME, INK)) / f64::from(PX)
@@ -132,14 +124,14 @@ impl Drawing for Plots<'_> {
         let (entries, columns) = self.legend();
         let lines = entries.len().div_ceil(columns);
         let width = f64::from(PAGE_WIDTH) / columns as f64;
-        for (i, (name, style, kind)) in entries.into_iter().enumerate() {
+        for (i, (name, number, kind)) in entries.into_iter().enumerate() {
             let left = (i % columns) as f64 * width;
             let left = left + if lines > 1 { 20.0 } else { (width - 42.0 - name_width(&name)) / 2.0 };
             let middle = LEGEND_TOP + ((i / columns) as f64 + 0.5) * LEGEND_LINE;
             if kind == SeriesKind::Curve {
-                line(area, [left, middle], [left + 32.0, middle], STROKE, style.color())?;
+                line(area, [left, middle], [left + 32.0, middle], STROKE, class_color(number))?;
             }
-            let (rim, face) = style.marker(kind);
+            let (rim, face) = marker(number, kind);
             area.draw(&(EmptyElement::at((px(left + 16.0), px(middle))) + rim + face))?;
             write(area, &name, anchored(text(NAME, INK), HPos::Left), [left + 42.0, middle])?;
         }
@@ -199,18 +191,19 @@ impl Plots<'_> {
             for series in plot.series.iter().rev() {
                 let points = || series.points.iter().filter(|p| is_shown(x, p.x));
                 let ranged = || points().filter(|p| is_shown(y, p.low) && is_shown(y, p.high));
-                let style = self.style(series);
+                let number = self.number(series);
+                let color = class_color(number);
                 if is_band {
                     if series.kind == SeriesKind::Curve && ranged().any(|p| p.low < p.high) {
                         let upper = ranged().map(|p| (p.x, p.high));
                         let band: Vec<_> = upper.chain(ranged().rev().map(|p| (p.x, p.low))).collect();
-                        chart.draw_series([Polygon::new(band, rgb(style.color()).mix(BAND))])?;
+                        chart.draw_series([Polygon::new(band, rgb(color).mix(BAND))])?;
                     }
                     continue;
                 }
                 let place = names.iter().position(|name| *name == series.name).unwrap_or(0);
                 let aside = if x.scale == AxisScale::Category { beside(place, names.len()) } else { 0.0 };
-                let stroke = rgb(mix(style.color(), [255; 3], 0.1)).stroke_width(px(STROKE) as u32);
+                let stroke = rgb(mix(color, [255; 3], 0.1)).stroke_width(px(STROKE) as u32);
                 let points = || points().filter(|p| is_shown(y, p.y));
                 if series.kind == SeriesKind::Curve {
                     chart.draw_series(LineSeries::new(points().map(|p| (p.x, p.y)), stroke))?;
@@ -221,7 +214,7 @@ impl Plots<'_> {
                     chart.draw_series(ranges.map(bar))?;
                 }
                 let marked = |p: &PlotPoint| {
-                    let (rim, face) = style.marker(series.kind);
+                    let (rim, face) = marker(number, series.kind);
                     EmptyElement::at((p.x + aside, p.y)) + rim + face
                 };
                 chart.draw_series(points().map(marked))?;
