@@ -60,11 +60,11 @@ pub(crate) fn duplicates(args: &DuplicatesArgs, common: &Common) -> Result<ExitC
     };
     let mut found = find_duplicates(&search, &options, &bars)?;
     bars.finish();
+    let whole = found.clone();
+    found.files_mut().for_each(|file| file.path = short(&file.path));
     if let Some(path) = &args.html {
         write_bytes(path, page(&found, &search)?.as_bytes())?;
     }
-    let whole = found.clone();
-    found.files_mut().for_each(|file| file.path = short(&file.path));
     if let Some(path) = &args.csv {
         write_bytes(path, csv(&found).as_bytes())?;
     }
