@@ -20,13 +20,9 @@ pub struct TriangleTree {
 struct Node {
     low: Point3<f64>,
     high: Point3<f64>,
-    content: NodeContent,
-}
-
-#[derive(Debug)]
-enum NodeContent {
-    Triangles(std::ops::Range<usize>),
-    Children([usize; 2]),
+    triangles: std::ops::Range<usize>,
+    /// The second child; the first follows its parent. 0 of a leaf.
+    second: usize,
 }
 
 /// A triangle, and the face of the mesh that it is.
@@ -70,7 +66,7 @@ impl TriangleTree {
         let corners = self.triangles[range.clone()].iter().flat_map(|t| t.corners);
         let (low, high) = corners.fold((infinite, -infinite), |(low, high), p| (low.inf(&p), high.sup(&p)));
         let index = self.nodes.len();
-        self.nodes.push(Node { low, high, content: NodeContent::Triangles(range.clone()) });
+        self.nodes.push(Node { low, high, triangles: range.clone(), second: 0 });
         if range.len() > LEAF {
             let axis = (high - low).imax();
             let middle = range.len() / 2;
@@ -78,8 +74,8 @@ impl TriangleTree {
             self.triangles[range.clone()]
                 .select_nth_unstable_by(middle, |a, b| center(a).total_cmp(&center(b)));
             let middle = range.start + middle;
-            let children = [self.grow(range.start..middle), self.grow(middle..range.end)];
-            self.nodes[index].content = NodeContent::Children(children);
+            self.grow(range.start..middle);
+            self.nodes[index].second = self.grow(middle..range.end);
         }
         index
     }
@@ -90,11 +86,7 @@ impl TriangleTree {
     }
 
     /// The same, found sooner if a point of the surface is known that is near.
-    pub(crate) fn nearest_from(
-        &self,
-        query: &Point3<f64>,
-        known: Option<&Point3<f64>>,
-    ) -> Option<NearestOnSurface> {
+    pub fn nearest_from(&self, query: &Point3<f64>, known: Option<&Point3<f64>>) -> Option<NearestOnSurface> {
         // The known point is off the surface by rounding.
         let limit = known.map_or(f64::INFINITY, |known| {
             (known - query).norm_squared() * (1.0 + ROUNDING) + ROUNDING * ROUNDING
@@ -108,38 +100,36 @@ impl TriangleTree {
 
     fn nearest_within(&self, query: &Point3<f64>, sq_distance: f64) -> Option<Best> {
         let mut best = Best { sq_distance, point: Point3::origin(), triangle: usize::MAX };
-        self.search(self.nodes.first()?, query, &mut best);
+        self.nodes.first()?;
+        self.search(0, query, &mut best);
         (best.triangle != usize::MAX).then_some(best)
     }
 
-    fn search(&self, node: &Node, query: &Point3<f64>, best: &mut Best) {
-        match &node.content {
-            NodeContent::Triangles(range) => {
-                for triangle in range.clone() {
-                    let Placed { corners, normal, .. } = &self.triangles[triangle];
-                    // A triangle is no nearer than its plane.
-                    let height = normal.dot(&(query - corners[0]));
-                    if height * height > best.sq_distance * (1.0 + ROUNDING) {
-                        continue;
-                    }
-                    let sides = corners.each_ref().map(|corner| corner.coords.as_slice());
-                    let [a, b, c] = OnTriangle::nearest(query.coords.as_slice(), sides).weights;
-                    let point =
-                        Point3::from(corners[0].coords * a + corners[1].coords * b + corners[2].coords * c);
-                    let sq_distance = (point - query).norm_squared();
-                    if sq_distance < best.sq_distance {
-                        *best = Best { sq_distance, point, triangle };
-                    }
+    fn search(&self, node: usize, query: &Point3<f64>, best: &mut Best) {
+        let Node { triangles, second, .. } = &self.nodes[node];
+        if *second > 0 {
+            let [a, b] = [node + 1, *second].map(|child| (child, self.nodes[child].sq_distance(query)));
+            // The nearer one is searched first.
+            for (child, bound) in if a.1 < b.1 { [a, b] } else { [b, a] } {
+                if bound < best.sq_distance {
+                    self.search(child, query, best);
                 }
             }
-            NodeContent::Children(children) => {
-                let [a, b] = children.map(|child| (&self.nodes[child], self.nodes[child].sq_distance(query)));
-                // The nearer one is searched first.
-                for (child, bound) in if a.1 < b.1 { [a, b] } else { [b, a] } {
-                    if bound < best.sq_distance {
-                        self.search(child, query, best);
-                    }
-                }
+            return;
+        }
+        for triangle in triangles.clone() {
+            let Placed { corners, normal, .. } = &self.triangles[triangle];
+            // A triangle is no nearer than its plane.
+            let height = normal.dot(&(query - corners[0]));
+            if height * height > best.sq_distance * (1.0 + ROUNDING) {
+                continue;
+            }
+            let sides = corners.each_ref().map(|corner| corner.coords.as_slice());
+            let [a, b, c] = OnTriangle::nearest(query.coords.as_slice(), sides).weights;
+            let point = Point3::from(corners[0].coords * a + corners[1].coords * b + corners[2].coords * c);
+            let sq_distance = (point - query).norm_squared();
+            if sq_distance < best.sq_distance {
+                *best = Best { sq_distance, point, triangle };
             }
         }
     }
@@ -154,7 +144,9 @@ struct Best {
 
 impl Node {
     fn sq_distance(&self, p: &Point3<f64>) -> f64 {
-        let beyond = |i: usize| (self.low[i] - p[i]).max(p[i] - self.high[i]).max(0.0);
+        // One instruction each, which `f64::max` is not.
+        let larger = |x: f64, y: f64| if x > y { x } else { y };
+        let beyond = |i: usize| larger(larger(self.low[i] - p[i], p[i] - self.high[i]), 0.0);
         (0..3).map(|i| beyond(i).powi(2)).sum()
     }
 }
@@ -170,6 +162,7 @@ pub struct OnTriangle {
 
 impl OnTriangle {
     /// The point nearest to `query`.
+    #[inline]
     pub fn nearest(query: &[f64], [p, q, r]: [&[f64]; 3]) -> Self {
         // All that matters are products of the sides from `p` and of the way from `p` to the query.
         let mut sums = [0.0; 6];
