@@ -89,17 +89,15 @@ pub fn align_points(a: &PointSet, b: &PointSet, reflections: Reflections) -> Ali
         if error > ABANDON_FACTOR * best.0 {
             break;
         }
-        let (motion, rms) = refine(&rough_a, &rough_b, start, ROUGH);
-        if rms < best.0 {
-            best = (rms, motion);
+        let refined = refine(&rough_a, &rough_b, start, ROUGH);
+        if refined.rms() < best.0 {
+            best = (refined.rms(), refined.map);
         }
     }
     let [fine_a, fine_b] = views([a, b], PointSet::all);
-    let (motion, _) = refine(&fine_a, &fine_b, best.1, FINE);
-    let Some(found) = Alignment::by(&fine_a, &fine_b, motion, f64::INFINITY) else {
-        unreachable!("sets have points")
-    };
-    Alignment { map: b.to_principal.inverse().after(&motion).after(&a.to_principal), ..found }
+    let found = refine(&fine_a, &fine_b, best.1, FINE).measured(&fine_a, &fine_b, f64::INFINITY);
+    let Some(Alignment { map, gap }) = found else { unreachable!("sets have points") };
+    Alignment { map: b.to_principal.inverse().after(&map).after(&a.to_principal), gap }
 }
 
 /// Motions of the principal axes of the first set to those of the second, the best of each handedness, after all stages
@@ -136,7 +134,7 @@ fn refine_all(
 ) -> Vec<(f64, Similarity)> {
     let [a, b] = views([a, b], PointSet::samples);
     let refined = starts.map(|start| refine(&a, &b, start, effort));
-    let mut found: Vec<_> = refined.map(|(motion, rms)| (rms, motion)).collect();
+    let mut found: Vec<_> = refined.map(|refined| (refined.rms(), refined.map)).collect();
     found.sort_by(|x, y| x.0.total_cmp(&y.0));
     found
 }

@@ -2,7 +2,7 @@
 
 use crate::align_points::{self, Reflections, SKETCH, align_points};
 use crate::handedness::is_decisive;
-use crate::icp::{Alignment, Effort, Gap, Towards, contacts, refine};
+use crate::icp::{Alignment, Effort, Gap, Refined, Towards, contacts, refine};
 use crate::rigid_surface::{RigidSurface, rms_radius};
 use crate::similarity::Similarity;
 use crate::starts::{equal_axes, framed_starts, mirrors, turned_starts};
@@ -74,7 +74,7 @@ pub fn align_surfaces(a: &RigidSurface, b: &RigidSurface) -> Option<Alignment> {
 impl Alignment {
     /// Two surfaces under a map of the first, at unit area, onto the second; `None` of surfaces without area.
     pub fn by_map(a: &RigidSurface, b: &RigidSurface, map: Similarity) -> Option<Self> {
-        Self::by(a, b, map, f64::INFINITY)
+        Refined { map, near: Vec::new(), samples: 0 }.measured(a, b, f64::INFINITY)
     }
 }
 
@@ -85,7 +85,7 @@ fn is_better(better: &Alignment, worse: &Alignment) -> bool {
 /// The alignment without a reflection that is as good as one with a reflection, if the surface is its own mirror image.
 fn unmirrored(a: &RigidSurface, b: &RigidSurface, mirrored: &Alignment) -> Option<Alignment> {
     nearest_starts(a, b, mirrors(b).map(|mirror| mirror.after(&mirrored.map))).into_iter().find_map(|start| {
-        let found = Alignment::by(a, b, refine(a, b, start, FINE).0, f64::INFINITY)?;
+        let found = refine(a, b, start, FINE).measured(a, b, f64::INFINITY)?;
         (!is_better(mirrored, &found)).then_some(found)
     })
 }
@@ -95,11 +95,11 @@ pub fn is_symmetric(surface: &RigidSurface) -> bool {
     let itself = Alignment { map: Similarity::identity(), gap: Gap { rms: 0.0, max: 0.0 } };
     let is_near = |mirror: &Similarity| {
         let squares =
-            contacts(surface, surface, mirror, SKETCH.samples, &[]).map(|contact| contact.sq_distance());
+            contacts(surface, surface, mirror, 0..SKETCH.samples, &[]).map(|contact| contact.sq_distance());
         squares.sum::<f64>() < 2.0 * SKETCH.samples as f64 * CLOSE * CLOSE
     };
     mirrors(surface).filter(is_near).any(|mirror| {
-        let found = Alignment::by(surface, surface, refine(surface, surface, mirror, FINE).0, f64::INFINITY);
+        let found = refine(surface, surface, mirror, FINE).measured(surface, surface, f64::INFINITY);
         found.is_some_and(|found| !is_better(&itself, &found))
     })
 }
@@ -113,7 +113,7 @@ fn best(a: &RigidSurface, b: &RigidSurface, start: &Similarity) -> Option<Alignm
         scale: radius_b / radius_a,
         ..motion
     };
-    let mut best = Alignment::by(a, b, refine(a, b, scaled(*start), FINE).0, f64::INFINITY)?;
+    let mut best = refine(a, b, scaled(*start), FINE).measured(a, b, f64::INFINITY)?;
     let is_mechanical = a.is_mechanical() && b.is_mechanical();
     if best.gap.rms < if is_mechanical { COINCIDENT_RMS } else { CLOSE } {
         return Some(best);
@@ -124,11 +124,11 @@ fn best(a: &RigidSurface, b: &RigidSurface, start: &Similarity) -> Option<Alignm
         turned.extend(framed_starts(a, b, start.reflected));
     }
     for start in nearest_starts(a, b, turned.into_iter().map(scaled)) {
-        let (map, rms) = refine(a, b, start, FINE);
-        if rms > REFINE_WITHIN * best.gap.rms {
+        let refined = refine(a, b, start, FINE);
+        if refined.rms() > REFINE_WITHIN * best.gap.rms {
             continue;
         }
-        let found = Alignment::by(a, b, map, best.gap.rms).filter(|found| found.gap.rms < best.gap.rms);
+        let found = refined.measured(a, b, best.gap.rms).filter(|found| found.gap.rms < best.gap.rms);
         best = found.unwrap_or(best);
         if best.gap.rms < COINCIDENT_RMS {
             break;
@@ -148,7 +148,7 @@ fn nearest_starts(
         let most = ranked.get(RANKED - 1).map_or(f64::INFINITY, |last| last.0);
         let mut sum = 0.0;
         // The sum only grows, so most starts are left early.
-        let is_near = contacts(a, b, &start, SKETCH.samples, &[]).all(|contact| {
+        let is_near = contacts(a, b, &start, 0..SKETCH.samples, &[]).all(|contact| {
             sum += contact.sq_distance();
             sum < most
         });

@@ -1,5 +1,7 @@
 //! Iterative closest points.
 
+use std::ops::Range;
+
 use nalgebra::{Point3, Rotation3, SMatrix, SVector, Vector3};
 use serde::Serialize;
 
@@ -60,35 +62,50 @@ impl Contact {
     }
 }
 
-/// Nearest points in both directions, so that neither body is favored, of the first `n` samples under a map. `known` are those
-/// under a map like it, or none.
+/// Nearest points in both directions, so that neither body is favored, of some samples under a map. `known` are those of the first
+/// samples under a map like it, or none.
 pub(crate) fn contacts<'a, B: Body>(
     a: &'a B,
     b: &'a B,
     map: &'a Similarity,
-    n: usize,
+    samples: Range<usize>,
     known: &'a [Contact],
 ) -> impl Iterator<Item = Contact> + 'a {
     let known = move |i: usize| known.get(i).map(|contact| &contact.nearest);
-    let there = a.samples().iter().take(n).enumerate().filter_map(move |(i, p)| {
+    let (skipped, n) = (samples.start, samples.end);
+    let there = a.samples().iter().enumerate().take(n).skip(skipped).filter_map(move |(i, p)| {
         let from = map.apply(p);
         let (to, normal) = b.nearest(&from, known(i))?;
         Some(Contact { from, to, normal, nearest: to })
     });
     let (back, n_there) = (map.inverse(), a.samples().len().min(n));
-    let here = b.samples().iter().take(n).enumerate().filter_map(move |(i, q)| {
+    let here = b.samples().iter().enumerate().take(n).skip(skipped).filter_map(move |(i, q)| {
         let (nearest, normal) = a.nearest(&back.apply(q), known(n_there + i))?;
         Some(Contact { from: map.apply(&nearest), to: *q, normal: map.rotation * normal, nearest })
     });
     there.chain(here)
 }
 
-impl Alignment {
-    /// By a map, measured at all samples. `None` of bodies without points, or that are farther apart than `limit`, root mean square.
-    pub(crate) fn by<B: Body>(a: &B, b: &B, map: Similarity, limit: f64) -> Option<Self> {
+/// A map, and the contacts of the first samples of either body under it.
+pub(crate) struct Refined {
+    pub(crate) map: Similarity,
+    pub(crate) near: Vec<Contact>,
+    /// How many of the samples.
+    pub(crate) samples: usize,
+}
+
+impl Refined {
+    /// Root mean square distance of these samples.
+    pub(crate) fn rms(&self) -> f64 {
+        mean_square(&self.near).sqrt()
+    }
+
+    /// Measured at all samples. `None` of bodies without points, or that are farther apart than `limit`, root mean square.
+    pub(crate) fn measured<B: Body>(self, a: &B, b: &B, limit: f64) -> Option<Alignment> {
+        let Self { map, near, samples } = self;
         let most = limit.powi(2) * (a.samples().len() + b.samples().len()) as f64;
         let (mut n, mut sum, mut max) = (0, 0.0, 0.0);
-        for contact in contacts(a, b, &map, usize::MAX, &[]) {
+        for contact in near.into_iter().chain(contacts(a, b, &map, samples..usize::MAX, &[])) {
             let sq = contact.sq_distance();
             (n, sum, max) = (n + 1, sum + sq, f64::max(max, sq));
             // The sum only grows.
@@ -97,8 +114,12 @@ impl Alignment {
             }
         }
         let gap = Gap { rms: (sum / f64::from(n)).sqrt(), max: max.sqrt() };
-        (n > 0).then_some(Self { map, gap })
+        (n > 0).then_some(Alignment { map, gap })
     }
+}
+
+fn mean_square(contacts: &[Contact]) -> f64 {
+    contacts.iter().map(Contact::sq_distance).sum::<f64>() / contacts.len().max(1) as f64
 }
 
 /// The effort of a refinement, and what it brings together.
@@ -121,12 +142,11 @@ pub(crate) enum Towards {
     Planes,
 }
 
-/// Refines a map, which keeps its handedness. Returns the root mean square distance of the samples, too.
-pub(crate) fn refine<B: Body>(a: &B, b: &B, start: Similarity, effort: Effort) -> (Similarity, f64) {
+/// Refines a map, which keeps its handedness.
+pub(crate) fn refine<B: Body>(a: &B, b: &B, start: Similarity, effort: Effort) -> Refined {
+    let Effort { samples, .. } = effort;
     let found =
-        |map: &Similarity, known: &[Contact]| contacts(a, b, map, effort.samples, known).collect::<Vec<_>>();
-    let mean_square =
-        |all: &[Contact]| all.iter().map(Contact::sq_distance).sum::<f64>() / all.len().max(1) as f64;
+        |map: &Similarity, known: &[Contact]| contacts(a, b, map, 0..samples, known).collect::<Vec<_>>();
     let (mut map, mut near) = (start, found(&start, &[]));
     let mut error = mean_square(&near);
     let mut damping = MIN_DAMPING;
@@ -152,7 +172,7 @@ pub(crate) fn refine<B: Body>(a: &B, b: &B, start: Similarity, effort: Effort) -
             Towards::Points | Towards::Planes => break,
         }
     }
-    (map, error.sqrt())
+    Refined { map, near, samples }
 }
 
 /// A small motion and change of size: angles, a translation, and the logarithm of a factor.
