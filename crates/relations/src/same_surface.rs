@@ -90,8 +90,11 @@ fn allowed(meshes: [&MeshGeometry; 2]) -> f64 {
 fn worst([a, b]: [&MeshGeometry; 2], map: &Similarity) -> f64 {
     let [errors_a, errors_b] = [a, b].map(|mesh| &mesh.surface.regions().chord_errors);
     let rounding = allowed([a, b]);
+    // Probes are near the ones before them, as a rule.
+    let mut known = None;
     let probe = |(p, error): (Point3<f64>, f64)| {
-        let near = b.surface.tree().nearest(&map.apply(&p))?;
+        let near = b.surface.tree().nearest_from(&map.apply(&p), known.as_ref())?;
+        known = Some(near.point);
         let allowed = rounding + ARCS * (error * map.scale + errors_b[near.face]);
         Some(near.sq_distance.sqrt() / allowed)
     };
