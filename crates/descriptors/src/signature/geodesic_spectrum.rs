@@ -53,12 +53,14 @@ pub fn geodesic_spectrum(
         return Err(DescriptorError::NoExtent { n_points: p });
     }
     let block = distances.sq_block().map(|sq| (sq.sqrt() / unit).sqrt());
+    // Nearly as many as NMDS keeps by default in three dimensions.
     let eigen = largest_magnitudes(&block, (block.nrows() / 2).max(7))?;
     let mut columns = distances.to_matrix()?;
     columns.apply(|d| *d = (*d / unit).sqrt());
     let mut columns = columns * &eigen.vectors;
-    for mut column in columns.column_iter_mut() {
-        column.iter_mut().zip(masses).for_each(|(x, m)| *x *= (m / total).sqrt());
+    let roots: Vec<f64> = masses.iter().map(|m| (m / total).sqrt()).collect();
+    for column in columns.as_mut_slice().chunks_exact_mut(p) {
+        column.iter_mut().zip(&roots).for_each(|(x, root)| *x *= root);
     }
     let triangle = triangular_factor(&columns);
     let inverse =

@@ -22,7 +22,7 @@ const CANCELLED: f64 = 0.1;
 pub(crate) fn weighted(operator: &dyn SymmetricOperator, columns: &Matrix) -> Matrix {
     let mut result = columns.clone();
     if let Some(masses) = operator.masses() {
-        for mut column in result.column_iter_mut() {
+        for column in result.as_mut_slice().chunks_exact_mut(masses.len().max(1)) {
             column.iter_mut().zip(masses).for_each(|(x, m)| *x *= m);
         }
     }
