@@ -25,7 +25,7 @@ pub struct LaplaceSpectrum {
 }
 
 impl LaplaceSpectrum {
-    /// Number of eigenpairs that the signatures of a surface use.
+    /// Number of eigenpairs that the signatures of a surface use. A convention.
     pub(crate) const DESCRIBING: usize = 60;
 
     /// The eigenpairs that the signatures of a surface use, as accurate as these need them.

@@ -3,7 +3,8 @@
 use linalg::Matrix;
 use mesh::{TriMesh, oriented_faces};
 
-/// Eigenfunctions whose area forms are compared.
+/// Eigenfunctions whose area forms are compared: 66 pairs of them, all among the [`FITTED`](crate::operators::FITTED) ones. A
+/// convention.
 pub(crate) const FUNCTIONS: usize = 12;
 
 /// An oriented surface: faces that all turn the same way.

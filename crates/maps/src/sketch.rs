@@ -22,6 +22,7 @@ impl Sketch {
             if k == last {
                 return Self { maps, functional };
             }
+            // A limit of effort.
             k = (k + (k / 10).max(2)).min(last);
         }
     }

@@ -7,7 +7,7 @@ use super::kind::{Signature, SignatureKind};
 use super::quantiles::quantiles;
 use rigid::{PointSet, farthest_points};
 
-/// Bins of the distribution of distances.
+/// Bins of the distribution of distances. A convention.
 const DISTANCES: usize = 16;
 
 /// The factor of distances: another triangulation changes them by .0055, root mean square, and the other values by .0016 (48
@@ -18,7 +18,7 @@ const OF_DISTANCES: f64 = 0.25;
 /// (`experiments run robustness --families parts:16x1`).
 const OF_NORMALS: f64 = 0.1;
 
-/// The largest degree of the harmonics of normals. The first is zero for closed surfaces.
+/// The largest degree of the harmonics of normals, a convention. The first is zero for closed surfaces.
 const DEGREE: usize = 8;
 
 /// The shape of a surface in space: it changes if the surface bends, so it counts between two surfaces that do not.

@@ -25,7 +25,7 @@ pub fn shape_dna(spectrum: &LaplaceSpectrum) -> Signature {
     Signature { kind: SignatureKind::ShapeDna, values: (1..=EIGENVALUES).map(value).collect() }
 }
 
-/// Number of times at which heat is sampled.
+/// Number of times at which heat is sampled. A convention, as are the numbers of energies and bins.
 const TIMES: usize = 8;
 
 /// Number of bins of the distribution of heat at one time.
@@ -71,7 +71,7 @@ pub fn heat_kernel_signature(spectrum: &LaplaceSpectrum) -> Signature {
 /// surface of unit area except the constant one, is the probability density of a particle of energy about `e` at `x`;
 /// its mean is one. At each of 12 energies it is described by the quantiles of 8 bins of equal area, as in
 /// [`heat_kernel_signature`]. Energies are evenly spaced from `ln λ_1` to `ln λ_42`, with Weyl's estimate of the
-/// eigenvalues, and `σ` is 1.5 times their spacing.
+/// eigenvalues, and `σ` is 1.5 times their spacing; both are conventions.
 ///
 /// * Invariant to isometries (bending, rigid motions, mirror images), scale and the order of vertices; changes with the
 ///   triangulation as the spectrum does.
