@@ -84,15 +84,10 @@ impl ShapeMetric {
     pub const SIZE_OF_POSES: f64 = 1.05;
 
     /// Length of a fused vector without the size.
-    pub const FUSED_LENGTH: usize = {
-        let mut sum = 0;
-        let mut i = 0;
-        while i < calibration::FUSED.len() {
-            sum += calibration::FUSED[i].0.n_values();
-            i += 1;
-        }
-        sum
-    };
+    pub const FUSED_LENGTH: usize = SignatureKind::GeodesicSpectrum.n_values()
+        + SignatureKind::ShapeDna.n_values()
+        + SignatureKind::HeatKernel.n_values()
+        + SignatureKind::WaveKernel.n_values();
 
     /// Weight of the distance between aligned forms, relative to the weights of the signatures, which sum to one.
     pub const FORM_WEIGHT: f64 = calibration::FORM[1];
