@@ -180,31 +180,38 @@ impl<'a, S: Borrow<Surface>> Mapping<'a, S> {
                 |[a, b, c]: &[VertexId; 3]| face_among([partner(*a)?, partner(*b)?, partner(*c)?], topology);
             return PointMap { points: in_faces(own.input.faces.iter().map(point), other) };
         }
-        let faces = repaired_faces(own);
-        let known: Vec<_> = faces.iter().flatten().copied().collect();
-        let found = self.mapped(of, MapElements::Faces(&known));
-        let mut found = in_faces(found.into_iter().map(Some), other).into_iter();
-        PointMap { points: faces.iter().map(|face| face.and_then(|_| found.next().flatten())).collect() }
+        self.of_faces(of, 1, |faces| self.mapped(of, MapElements::Faces(faces)))
+    }
+
+    /// The points of the faces of one side, `n` for each, from those of the faces that the repair kept.
+    fn of_faces(
+        &self,
+        of: Side,
+        n: usize,
+        mapped: impl FnOnce(&[[VertexId; 3]]) -> Vec<SurfacePoint>,
+    ) -> PointMap {
+        let [own, other] = of.ordered(self.shapes.map(|shape| shape.surface()));
+        let repaired = |face: &[VertexId; 3]| {
+            let [a, b, c] = face.map(|v| own.repaired_vertex(v).ok());
+            Some([a?, b?, c?])
+        };
+        let faces: Vec<Option<[VertexId; 3]>> = own.input.faces.iter().map(repaired).collect();
+        let kept: Vec<_> = faces.iter().flatten().copied().collect();
+        let mut found = in_faces(mapped(&kept).into_iter().map(Some), other).into_iter();
+        let all = faces.iter().flat_map(|face| std::iter::repeat_n(face.is_some(), n));
+        PointMap { points: all.map(|is_kept| if is_kept { found.next().flatten() } else { None }).collect() }
     }
 
     /// The same for the corners of the faces of one side, three for each face, in order to carry values at the corners of the other
     /// side, such as texture coordinates: `values` has three rows for each of its faces. No face here takes its values from both
     /// sides of a seam, across which those of neighboring faces differ. `None` between a part and a whole.
     pub fn corners(&self, of: Side, values: &Matrix) -> Option<PointMap> {
-        let [own, other] = of.ordered(self.shapes.map(|shape| shape.surface()));
         if self.partners.is_some() {
             return None;
         }
-        let joined = joined(other, values);
-        let faces = repaired_faces(own);
-        let known: Vec<_> = faces.iter().flatten().copied().collect();
-        let found = self.mapped(of, MapElements::Corners { faces: &known, joined: &joined });
-        let mut found = in_faces(found.into_iter().map(Some), other).into_iter();
-        let three = |face: &Option<[VertexId; 3]>| match face {
-            Some(_) => std::array::from_fn(|_| found.next().flatten()),
-            None => [None; 3],
-        };
-        Some(PointMap { points: faces.iter().map(three).collect::<Vec<[_; 3]>>().into_flattened() })
+        let [_, other] = of.ordered(self.shapes.map(|shape| shape.surface()));
+        let joined = &joined(other, values);
+        Some(self.of_faces(of, 3, |faces| self.mapped(of, MapElements::Corners { faces, joined })))
     }
 
     fn mapped(&self, of: Side, elements: MapElements<'_>) -> Vec<SurfacePoint> {
@@ -212,15 +219,6 @@ impl<'a, S: Borrow<Surface>> Mapping<'a, S> {
         let topology = target.intrinsic().topology();
         mapped_points(self.shapes.map(|shape| &shape.shape), self.functional, of, elements, topology)
     }
-}
-
-/// The faces of the input, with the vertices of the repaired mesh; `None` for those that have lost one.
-fn repaired_faces(surface: &Surface) -> Vec<Option<[VertexId; 3]>> {
-    let repaired = |face: &[VertexId; 3]| -> Option<[VertexId; 3]> {
-        let [a, b, c] = face.map(|v| surface.repaired_vertex(v).ok());
-        Some([a?, b?, c?])
-    };
-    surface.input.faces.iter().map(repaired).collect()
 }
 
 /// For every corner of the repaired mesh, whether values at the corners of the input are the same on both sides of the edge
