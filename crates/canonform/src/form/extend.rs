@@ -83,7 +83,7 @@ impl Embedded {
             for &(vertex, weight) in &corners {
                 row += coords.row(vertex.index()) * weight;
             }
-            row -= &shift * moment(surface, point, &corners);
+            row -= &shift * moment(surface, &corners);
         }
         Ok(placed)
     }
@@ -104,17 +104,14 @@ fn corners(surface: &Surface, point: SurfacePoint) -> Vec<(VertexId, f64)> {
 }
 
 /// `sum w_i w_j l_ij^2` over the sides of the face, or the edge, of a point.
-fn moment(surface: &Surface, point: SurfacePoint, corners: &[(VertexId, f64)]) -> f64 {
+fn moment(surface: &Surface, corners: &[(VertexId, f64)]) -> f64 {
     let intrinsic = surface.intrinsic();
-    let side = |[(a, v), (b, w)]: [(VertexId, f64); 2]| {
-        let edge = intrinsic.topology().edge_between(a, b);
+    let sides = corners.iter().enumerate().flat_map(|(i, a)| corners[..i].iter().map(move |b| (a, b)));
+    let of_side = |((a, v), (b, w)): (&(VertexId, f64), &(VertexId, f64))| {
+        let edge = intrinsic.topology().edge_between(*a, *b);
         v * w * edge.map_or(0.0, |edge| intrinsic.length(edge)).powi(2)
     };
-    match (point, corners) {
-        (SurfacePoint::Edge { .. }, &[a, b]) => side([a, b]),
-        (SurfacePoint::Face { .. }, &[a, b, c]) => [[a, b], [b, c], [c, a]].map(side).iter().sum(),
-        _ => 0.0,
-    }
+    sides.map(of_side).sum()
 }
 
 /// The form of a coarser mesh, in whose coordinates a finer one is embedded.
