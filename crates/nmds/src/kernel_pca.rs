@@ -2,7 +2,7 @@
 
 use linalg::{LandmarkDistances, Matrix, symmetric_eigen, thin_qr};
 
-use crate::squares::{center_columns, check_extent, n_significant};
+use crate::squares::{center_columns, check_extent, n_significant, positive_pairs};
 use crate::{Embedding, NmdsError, Regularization};
 
 /// The width `sigma` of the Gaussian kernel `exp(-d^2 / (2 sigma^2))`.
@@ -84,10 +84,8 @@ pub fn kernel_pca(
     let block = distances.sq_block().map(gauss);
 
     let eigen = symmetric_eigen(&block)?;
-    // A Gaussian of geodesic distances may be indefinite: keep the positive eigenvalues above rounding error.
-    let floor = block.nrows() as f64 * f64::EPSILON * eigen.values[0];
-    let leading: Vec<usize> = (0..rank).filter(|&i| eigen.values[i] > floor).collect();
-    let kept = eigen.select(&leading);
+    // A Gaussian of geodesic distances may be indefinite.
+    let kept = positive_pairs(&eigen, rank);
     let mut columns = kernel * &kept.vectors;
     for (mut column, value) in columns.column_iter_mut().zip(&kept.values) {
         column /= value.sqrt();

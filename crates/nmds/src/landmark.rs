@@ -4,7 +4,7 @@ use linalg::{LandmarkDistances, symmetric_eigen};
 
 use crate::embedding::negative_mass;
 use crate::passes::product;
-use crate::squares::{center_columns, check_dim, check_extent, n_significant, symmetrized};
+use crate::squares::{center_columns, check_dim, check_extent, n_significant, positive_pairs, symmetrized};
 use crate::{Embedding, NmdsError};
 
 /// Landmark MDS: embeds the n landmarks by classical scaling and places all points by their distances from them.
@@ -36,10 +36,7 @@ pub fn landmark_mds(distances: &LandmarkDistances, dim: usize) -> Result<Embeddi
     let mut gram = block.transpose() * -0.5;
     center_columns(&mut gram);
     let eigen = symmetric_eigen(&symmetrized(gram))?;
-    let floor = n as f64 * f64::EPSILON * eigen.values[0].abs();
-    let positive: Vec<usize> = (0..dim).filter(|&i| eigen.values[i] > floor).collect();
-    let kept = eigen.select(&positive);
-
+    let kept = positive_pairs(&eigen, dim);
     let mut axes = kept.vectors * -0.5;
     for (mut axis, value) in axes.column_iter_mut().zip(&kept.values) {
         axis /= value.sqrt();

@@ -1,6 +1,6 @@
 //! What the embeddings from squared distances have in common.
 
-use linalg::Matrix;
+use linalg::{Matrix, SymmetricEigen};
 
 use crate::NmdsError;
 
@@ -41,6 +41,12 @@ pub(crate) fn center_columns(columns: &mut Matrix) {
         let mean = column.sum() / p;
         column.add_scalar_mut(-mean);
     }
+}
+
+/// The positive ones of the first `k` eigenpairs of an indefinite matrix, above the rounding of these numbers.
+pub(crate) fn positive_pairs(eigen: &SymmetricEigen, k: usize) -> SymmetricEigen {
+    let floor = eigen.values.len() as f64 * f64::EPSILON * eigen.values[0].abs();
+    eigen.select(&(0..k).filter(|&i| eigen.values[i] > floor).collect::<Vec<_>>())
 }
 
 /// The magnitude below which eigenvalues may be rounding. Coordinates in files have 32 bits: this is the usual tolerance of a
