@@ -21,8 +21,9 @@ pub struct PartOfWhole {
 const AGREEMENT: f64 = 0.1;
 
 /// How a map treats the orientation of the surfaces.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, strum::IntoStaticStr)]
 #[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "kebab-case")]
 pub enum MapKind {
     /// It keeps the orientation: left goes to left.
     Direct,
@@ -38,11 +39,7 @@ impl MapKind {
 
     /// The name on the command line and in records.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Direct => "direct",
-            Self::Mirrored => "mirrored",
-            Self::Unoriented => "unoriented",
-        }
+        self.into()
     }
 }
 
