@@ -215,6 +215,11 @@ impl IndexWriter {
         self.database.change(sql, params_from_iter(values))
     }
 
+    /// What was noted under a name.
+    pub fn note(&self, name: &'static str) -> Result<Option<String>, IndexError> {
+        self.database.meta(name)
+    }
+
     /// Notes what is true of the whole index, under a name that is not one of the schema, or removes the note.
     pub fn set_note(&mut self, name: &'static str, text: Option<&str>) -> Result<(), IndexError> {
         self.database.set_meta(name, text)

@@ -6,7 +6,6 @@ use std::path::PathBuf;
 use base::{ContentHash, Observer};
 use descriptors::{Boundary, PreparedShape, Sample, ShapeMetric};
 use index::{Entry, Index, IndexError, IndexWriter, Shape};
-use rayon::prelude::*;
 use retrieval::Neighbor;
 use serde::{Deserialize, Serialize};
 
@@ -33,6 +32,21 @@ const FOLDS: usize = 5;
 
 /// The note of an index that states it.
 const NOTE: &str = "agreement";
+
+/// What an index states.
+#[derive(Serialize, Deserialize)]
+struct Note {
+    /// Hash of what it was fitted to; earlier versions state none.
+    fitted_to: Option<ContentHash>,
+    #[serde(flatten)]
+    found: Option<Agreement>,
+}
+
+impl Note {
+    fn read(text: Option<String>) -> Option<Self> {
+        serde_json::from_str(&text?).ok()
+    }
+}
 
 /// Where hits of the class of a query end in a collection, and how well that separates them from others.
 ///
@@ -101,7 +115,8 @@ impl Agreement {
             observer.step();
             hits(&shapes, &prepared, query)
         };
-        let hits = (0..n_queries).into_par_iter().map(hits).collect::<Result<Vec<_>, Error>>()?;
+        // Each search aligns in parallel.
+        let hits = (0..n_queries).map(hits).collect::<Result<Vec<_>, Error>>()?;
         let count = |kind| hits.iter().flatten().filter(|(_, is_one, _)| *is_one == kind).count();
         let [other_classes, same_class] = [false, true].map(count);
         if same_class < 2 * LEAST || other_classes == 0 {
@@ -131,7 +146,7 @@ impl Agreement {
 
     /// What an index states.
     pub(super) fn stated(index: &Index) -> Result<Option<Self>, IndexError> {
-        Ok(index.note(NOTE)?.and_then(|text| serde_json::from_str(&text).ok()))
+        Ok(Note::read(index.note(NOTE)?).and_then(|note| note.found))
     }
 }
 
@@ -187,14 +202,24 @@ fn boundary(mut hits: Vec<Sample>) -> Boundary {
     found.into_iter().find(is_usable).unwrap_or(Boundary::new(ShapeMetric::SAME_CLASS.at, 0.0))
 }
 
-/// Finishes an index, with what its classes say.
+/// All that decides about the boundary of an index: the shapes that are drawn and how they are described and compared.
+fn hash(drawn: &[Entry]) -> ContentHash {
+    let shape = |shape: &Entry| [shape.id.clone(), shape.label.clone(), shape.content.to_string()];
+    let version = ShapeMetric::VERSION.to_string();
+    ContentHash::of(&drawn.iter().flat_map(shape).chain([version]).collect::<Vec<_>>())
+}
+
+/// Finishes an index, with what its classes say. That is found again only where it may have changed.
 pub(super) fn finish(
     mut writer: IndexWriter,
     options: &DescribeOptions,
     observer: &dyn Observer,
 ) -> Result<Index, Error> {
-    let found = Agreement::of(writer.entries()?, options, |id| writer.shape(id), observer)?;
-    let text = found.and_then(|found| serde_json::to_string(&found).ok());
-    writer.set_note(NOTE, text.as_deref())?;
+    let shapes = drawn(writer.entries()?);
+    let fitted_to = Some(hash(&shapes));
+    if Note::read(writer.note(NOTE)?).is_none_or(|known| known.fitted_to != fitted_to) {
+        let found = Agreement::of(shapes, options, |id| writer.shape(id), observer)?;
+        writer.set_note(NOTE, serde_json::to_string(&Note { fitted_to, found }).ok().as_deref())?;
+    }
     Ok(writer.finish()?)
 }

@@ -17,6 +17,8 @@ use canonform::relations::RelationKind;
 use canonform::search::{Answer, SearchOptions, SearchRank, ShapeSearch};
 use testkit::tree;
 
+use crate::progress::Stages;
+
 /// Names that a shell, a spreadsheet, a terminal or a browser may obey.
 const HOSTILE: [&str; 12] = [
     "c\ntouch pwned #.off",
@@ -399,15 +401,27 @@ fn classes_that_were_given_stay_and_have_a_boundary_of_their_own() {
     let rows = (0..18).map(|i| format!("{}{i}.off,{}\n", ["thin", "fat"][i % 2], ["wire", "tyre"][i % 2]));
     fs::write(at("labels.csv"), rows.collect::<String>()).unwrap();
     let (describe, index) = (DescribeOptions::default(), at("all.canonform"));
-    let build = |labels: Option<&LabelSource>| {
+    let stages = Stages::default();
+    let build_at = |index: &Path, labels: Option<&LabelSource>| {
         let options = BuildOptions { labels, ..BuildOptions::new(&describe) };
-        build_index(&at("models"), &index, &options, &()).unwrap();
-        Index::open(&index).unwrap().classes().unwrap().into_keys().collect::<Vec<_>>()
+        build_index(&at("models"), index, &options, &stages).unwrap();
+        Index::open(index).unwrap().classes().unwrap().into_keys().collect::<Vec<_>>()
     };
+    let build = |labels: Option<&LabelSource>| build_at(&index, labels);
+    let boundary = |index: &Path| Index::open(index).unwrap().note("agreement").unwrap().unwrap();
+    let n_fitted = || stages.0.lock().unwrap().iter().filter(|stage| stage.0 == "comparing classes").count();
     let file = LabelSource::read(&at("labels.csv")).unwrap();
+    fs::rename(at("models/fat17.off"), at("fat17.off")).unwrap();
     assert_eq!(build(Some(&file)), ["tyre", "wire"]);
+    let of_17 = boundary(&index);
     io::write(&at("models/new.off"), &ball()).unwrap();
     assert_eq!(build(None), ["tyre", "wire"], "the new shape has no class");
+    assert_eq!((boundary(&index), n_fitted()), (of_17.clone(), 1), "nor does it move the boundary");
+    fs::rename(at("fat17.off"), at("models/fat17.off")).unwrap();
+    build(Some(&file));
+    build_at(&at("at once.canonform"), Some(&file));
+    assert_eq!((boundary(&index), n_fitted()), (boundary(&at("at once.canonform")), 3));
+    assert_ne!(boundary(&index), of_17);
     let found = |rank_by| {
         let (search, options) =
             (ShapeSearch::open(&index).unwrap(), SearchOptions { k: 18, rank_by, ..Default::default() });
