@@ -8,7 +8,7 @@ use canonform::{Observer, Surface};
 
 /// The stages: their names, totals and steps.
 #[derive(Default)]
-pub struct Stages(pub Mutex<Vec<(String, usize, usize)>>);
+pub(crate) struct Stages(pub(crate) Mutex<Vec<(String, usize, usize)>>);
 
 impl Observer for Stages {
     fn begin(&self, stage: &str, total: usize) {
