@@ -233,14 +233,17 @@ impl<D: Bearing> Propagation<'_, D> {
     #[inline]
     fn push_left(&mut self, frame: &FaceFrame, window: &PathWindow<D>, end: f64, until: Until) {
         if end > window.start && window.turn < self.surface.max_turn {
-            frame.project_on_ac(window, [window.start, end], until, self.left);
+            let part = PathWindow { end, ..*window };
+            self.left.extend(part.projected(frame.from_a, frame.sides[0], until));
         }
     }
 
     #[inline]
     fn push_right(&mut self, frame: &FaceFrame, window: &PathWindow<D>, start: f64, until: Until) {
         if start < window.end && -window.turn < self.surface.max_turn {
-            frame.project_on_cb(window, [start, window.end], until, self.right);
+            // The apex is at the start of the side.
+            let (part, side) = (PathWindow { start, ..*window }.mirrored(frame.base), frame.sides[1]);
+            self.right.extend(part.projected(frame.from_b, side, until).map(|part| part.mirrored(side)));
         }
     }
 

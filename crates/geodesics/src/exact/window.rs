@@ -128,63 +128,27 @@ pub(super) enum Until {
     Apex,
 }
 
-impl FaceFrame {
-    /// Appends the part of `ac` that the rays of `window` between `start` and `end` of the base reach, measured from
-    /// `a`, unless it has no width.
+impl<D: Bearing> PathWindow<D> {
+    /// The part of a side of the next face that the rays of the window reach, unless it has no width. The side leaves the start of
+    /// the base in the direction `(cos, sin)`.
     #[inline]
-    pub(super) fn project_on_ac<D: Bearing>(
-        &self,
-        window: &PathWindow<D>,
-        [start, end]: [f64; 2],
-        until: Until,
-        out: &mut Vec<PathWindow<D>>,
-    ) {
-        let source = [window.x, window.depth];
-        let ([x, depth], [start, end]) = project(self.from_a, self.sides[0], source, [start, end], until);
-        if end > start {
-            let (turn, bearing) = (window.turn.max(0) + 1, window.bearing.turned(self.from_a));
-            out.push(PathWindow { start, end, x, depth, offset: window.offset, turn, bearing });
-        }
+    pub(super) fn projected(&self, [cos, sin]: [f64; 2], length: f64, until: Until) -> Option<Self> {
+        let Self { start, end, x, depth, .. } = *self;
+        let below = x * sin + depth * cos;
+        let meet = |t: f64| t * depth / (below - t * sin);
+        let (near, far) = (meet(start).max(0.0), meet(end));
+        // Rounding may let a ray along the side meet it beyond its end, before its start or nowhere.
+        let far = if until == Until::Ray && far >= 0.0 { far.min(length) } else { length };
+        (far > near).then(|| Self {
+            start: near,
+            end: far,
+            x: x * cos - depth * sin,
+            depth: below.max(0.0),
+            turn: self.turn.max(0) + 1,
+            bearing: self.bearing.turned([cos, sin]),
+            ..*self
+        })
     }
-
-    /// As [`project_on_ac`](Self::project_on_ac), for `bc`, measured from `c`: the apex is at its start.
-    #[inline]
-    pub(super) fn project_on_cb<D: Bearing>(
-        &self,
-        window: &PathWindow<D>,
-        [start, end]: [f64; 2],
-        until: Until,
-        out: &mut Vec<PathWindow<D>>,
-    ) {
-        let side = self.sides[1];
-        let source = [self.base - window.x, window.depth];
-        let mirrored = [self.base - end, self.base - start];
-        let ([x, depth], [start, end]) = project(self.from_b, side, source, mirrored, until);
-        if end > start {
-            let turn = window.turn.min(0) - 1;
-            let bearing = window.bearing.mirrored().turned(self.from_b).mirrored();
-            let (start, end, x) = (side - end, side - start, side - x);
-            out.push(PathWindow { start, end, x, depth, offset: window.offset, turn, bearing });
-        }
-    }
-}
-
-/// Position and depth of a source below the side of a face that leaves the origin in the direction `(cos, sin)`, and
-/// where the rays from it through `start` and `end` of the base meet the side.
-#[inline]
-fn project(
-    [cos, sin]: [f64; 2],
-    side: f64,
-    [x, depth]: [f64; 2],
-    [start, end]: [f64; 2],
-    until: Until,
-) -> ([f64; 2], [f64; 2]) {
-    let below = x * sin + depth * cos;
-    let meet = |t: f64| t * depth / (below - t * sin);
-    let far = meet(end);
-    // Rounding may let a ray along the side meet it beyond its end, before its start or nowhere.
-    let far = if until == Until::Ray && far >= 0.0 { far.min(side) } else { side };
-    ([x * cos - depth * sin, below.max(0.0)], [meet(start).max(0.0), far])
 }
 
 /// A ray that misses the apex by no more than this, in lengths of the base where it crosses it, bends there to meet
