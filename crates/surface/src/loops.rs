@@ -5,7 +5,7 @@
 //! integers modulo two if they cross the same loops of faces equally often, up to even numbers. So every edge gets a random
 //! word for each loop of faces that crosses it, and the words of a loop add up to zero exactly if it separates.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use base::{Budget, Exceeded, SplitMix};
 
@@ -69,12 +69,8 @@ pub fn short_loops(
 ) -> Result<Vec<SurfaceLoop>, Exceeded> {
     assert_eq!(lengths.len(), topology.n_edges(), "one length for every edge");
     let Some(words) = homology_signatures(topology) else { return Ok(Vec::new()) };
-    let mut sources: Vec<VertexId> = Vec::new();
-    for (edge, _) in topology.edges().iter().zip(&words).filter(|(_, word)| **word != 0) {
-        sources.extend(edge);
-    }
-    sources.sort_unstable();
-    sources.dedup();
+    let marked = topology.edges().iter().zip(&words).filter(|(_, word)| **word != 0);
+    let sources: BTreeSet<VertexId> = marked.flat_map(|(ends, _)| *ends).collect();
     let mut search = Search::new(topology, lengths, &words);
     let mut shortest: BTreeMap<u64, SurfaceLoop> = BTreeMap::new();
     for source in sources {

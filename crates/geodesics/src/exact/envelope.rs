@@ -53,16 +53,9 @@ pub(super) fn trim<D: Bearing>(windows: &mut Vec<PathWindow<D>>, length: f64, en
 
 /// Cuts the outermost windows where paths through the ends of the edge are shorter.
 fn cut_ends<D: Bearing>(windows: &mut Vec<PathWindow<D>>, length: f64, ends: [f64; 2]) {
-    while windows.last_mut().is_some_and(|last| !last.cut_end(length, ends[1])) {
-        windows.pop();
-    }
-    let mut gone = 0;
-    while gone < windows.len() && !windows[gone].cut_start(ends[0]) {
-        gone += 1;
-    }
-    if gone > 0 {
-        windows.drain(..gone);
-    }
+    while windows.pop_if(|last| !last.cut_end(length, ends[1])).is_some() {}
+    let gone = windows.iter_mut().position(|first| first.cut_start(ends[0])).unwrap_or(windows.len());
+    windows.drain(..gone);
 }
 
 /// Which of two windows that meet are left.

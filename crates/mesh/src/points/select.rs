@@ -21,10 +21,8 @@ const ROUNDING: f64 = 1e-9;
 pub(super) fn agreed(stars: &Stars) -> Vec<[u32; 3]> {
     let mut proposals = stars.proposals.clone();
     proposals.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    let mut counted: Vec<(usize, Proposal)> = Vec::with_capacity(proposals.len() / 3);
-    for group in proposals.chunk_by(|a, b| a.0 == b.0) {
-        counted.push((group.len(), group[0]));
-    }
+    let groups = proposals.chunk_by(|a, b| a.0 == b.0);
+    let mut counted: Vec<(usize, Proposal)> = groups.map(|group| (group.len(), group[0])).collect();
     counted.sort_unstable_by(|(n, a), (m, b)| m.cmp(n).then(a.1.total_cmp(&b.1)).then(a.0.cmp(&b.0)));
     let mut sectors = Sectors { stars, taken: vec![Vec::new(); stars.points.len()] };
     let mut faces: Vec<[u32; 3]> = counted
@@ -79,11 +77,7 @@ fn close_gaps(faces: &mut Vec<[u32; 3]>, sectors: &mut Sectors<'_>) {
         let mut ears = ears(faces, sectors.stars);
         ears.sort_unstable_by(|(a, f), (b, g)| a.total_cmp(b).then(f.cmp(g)));
         let before = faces.len();
-        for (_, ear) in ears {
-            if sectors.take(ear) {
-                faces.push(ear);
-            }
-        }
+        faces.extend(ears.into_iter().map(|(_, ear)| ear).filter(|ear| sectors.take(*ear)));
         if faces.len() == before {
             break;
         }
