@@ -59,17 +59,11 @@ fn stiffness(
 ) -> SparseSymmetric {
     let weights = elements.iter().flat_map(Element::weights);
     let triangles = weights.map(|(ends, weight)| (ends, [scale * weight, -scale * weight]));
-    let mut diagonal = vec![0.0; n];
-    let mut entries = Vec::with_capacity(3 * elements.len());
-    for (ends, [at, between]) in triangles.chain(bars) {
+    let entries = triangles.chain(bars).flat_map(|(ends, [at, between])| {
         let [i, j] = ends.map(|v| v as usize);
-        diagonal[i] += at;
-        diagonal[j] += at;
-        entries.push((i, j, between));
-    }
-    let mut matrix = SparseSymmetric::from_entries(n, entries);
-    matrix.add_to_diagonal(diagonal.into_iter());
-    matrix
+        [(i, i, at), (j, j, at), (i, j, between)]
+    });
+    SparseSymmetric::from_entries(n, entries)
 }
 
 /// The factor of a matrix, or of the matrix with as many of [`SHIFTS`] as it needs.
