@@ -7,7 +7,7 @@ use surface::{CornerId, FaceId, NearestFirst, SurfacePoint, VertexId};
 
 use super::crossing::{Crossing, Crossings};
 use super::queue::{Buckets, Labels, NOWHERE};
-use super::triangles::{MarchTriangle, Triangles};
+use super::triangles::Triangles;
 use super::window::{ROUNDING, SourceWindow};
 use crate::plane::{self, around};
 use crate::prefetch::prefetch;
@@ -173,22 +173,10 @@ impl TriangleFront {
                 self.start_at(triangles, *corner, offset, &stops);
             }
         }
-        if self.reached.len() < triangles.all.len() {
-            match self.nearby(triangles) {
-                Some(nearby) => self.start_next_to(triangles, nearby.into_iter(), stops),
-                None => self.start_next_to(triangles, (0..triangles.all.len()).map(FaceId::from), stops),
-            }
+        if self.reached.len() == triangles.all.len() {
+            return;
         }
-    }
-
-    /// Offers the rays from all corners of those triangles that were not reached.
-    fn start_next_to(
-        &mut self,
-        triangles: &Triangles,
-        numbers: impl Iterator<Item = FaceId>,
-        stops: impl Fn(FaceId, f64) -> bool,
-    ) {
-        for number in numbers {
+        for number in self.nearby(triangles) {
             if self.triangles.distance(number) == f64::INFINITY {
                 for (corner, vertex) in number.corners().into_iter().zip(triangles.at(number).vertices()) {
                     let offset = self.vertices[vertex.index()];
@@ -200,11 +188,11 @@ impl TriangleFront {
         }
     }
 
-    /// The triangles with a vertex that was reached, in ascending order; none if they may be a large share of all.
-    fn nearby(&self, triangles: &Triangles) -> Option<Vec<FaceId>> {
+    /// The triangles with a vertex that was reached, in ascending order; all if they may be a large share of them.
+    fn nearby(&self, triangles: &Triangles) -> Vec<FaceId> {
         let n_known = self.reached.len() + self.along_edges.len();
         if n_known > triangles.all.len() / FEW {
-            return None;
+            return (0..triangles.all.len()).map(FaceId::from).collect();
         }
         let corners = self.reached.iter().flat_map(|number| triangles.at(*number).vertices());
         let vertices = corners.chain(self.along_edges.iter().copied());
@@ -212,7 +200,7 @@ impl TriangleFront {
         let mut found: Vec<FaceId> = around.map(|corner| corner.face()).collect();
         found.sort_unstable();
         found.dedup();
-        Some(found)
+        found
     }
 
     fn march(
@@ -403,9 +391,18 @@ impl TriangleFront {
         budget: &Budget,
         stops: impl Fn(FaceId, f64) -> bool,
     ) -> Result<(), Exceeded> {
-        match self.nearby(triangles) {
-            Some(nearby) => self.relax_sides(nearby.iter().map(|number| triangles.at(*number))),
-            None => self.relax_sides(triangles.all.iter()),
+        let mut ways = Vec::new();
+        for triangle in self.nearby(triangles).into_iter().map(|number| triangles.at(number)) {
+            let ([a, b, c], [to_a, to_b, to_c]) = (triangle.vertices(), triangle.lengths);
+            let [at_a, at_b, at_c] = [a, b, c].map(|v| self.vertices[v.index()]);
+            let (ab, bc, ca) = ((at_b - at_a).abs(), (at_c - at_b).abs(), (at_a - at_c).abs());
+            if (bc > SLACK * to_a) | (ca > SLACK * to_b) | (ab > SLACK * to_c) {
+                ways.extend([(to_a, [b, c]), (to_b, [c, a]), (to_c, [a, b])]);
+            }
+        }
+        for (length, [p, q]) in ways {
+            self.relax(p, q, length);
+            self.relax(q, p, length);
         }
         for vertex in (0..triangles.links.n_vertices()).map(VertexId::from) {
             for way in triangles.links.ways(vertex) {
@@ -431,23 +428,6 @@ impl TriangleFront {
             }
         }
         Ok(())
-    }
-
-    /// Lowers the vertices of triangles along their sides; vertices further on are left to the search along edges, which stops.
-    fn relax_sides<'t>(&mut self, triangles: impl Iterator<Item = &'t MarchTriangle>) {
-        let mut ways = Vec::new();
-        for triangle in triangles {
-            let ([a, b, c], [to_a, to_b, to_c]) = (triangle.vertices(), triangle.lengths);
-            let [at_a, at_b, at_c] = [a, b, c].map(|v| self.vertices[v.index()]);
-            let (ab, bc, ca) = ((at_b - at_a).abs(), (at_c - at_b).abs(), (at_a - at_c).abs());
-            if (bc > SLACK * to_a) | (ca > SLACK * to_b) | (ab > SLACK * to_c) {
-                ways.extend([(to_a, [b, c]), (to_b, [c, a]), (to_c, [a, b])]);
-            }
-        }
-        for (length, [p, q]) in ways {
-            self.relax(p, q, length);
-            self.relax(q, p, length);
-        }
     }
 
     /// Lowers a vertex to the distance of another and the length of the way between them, if that is less.
