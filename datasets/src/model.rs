@@ -7,7 +7,7 @@ use serde::Deserialize;
 
 use crate::implicit::{Blob, BodyPart, ImplicitBody};
 use crate::pose::{JointTurn, Pose};
-use crate::skeleton::{BoneNode, Joint, JointId, Skeleton};
+use crate::skeleton::{BoneNode, Joint, Skeleton};
 
 /// A body at rest, its skeleton and its poses.
 #[derive(Debug, Clone)]
@@ -115,10 +115,10 @@ impl BodyModel {
     }
 }
 
-/// Joints by name, and the joints of a chain by its name; on the left and on the right.
+/// By name: joints, each with its chain and its number there, and chains; on the left and on the right.
 #[derive(Default)]
 struct JointNames<'a> {
-    joints: HashMap<&'a str, Vec<JointId>>,
+    joints: HashMap<&'a str, Vec<[usize; 2]>>,
     chains: HashMap<&'a str, Vec<usize>>,
 }
 
@@ -136,7 +136,7 @@ impl BodyDescription {
                 chains.push(skeleton.mirror(chains[0]));
             }
             for (joint, JointData { name, .. }) in data.joints.iter().enumerate() {
-                let ids = chains.iter().map(|&chain| JointId { chain, joint }).collect();
+                let ids = chains.iter().map(|&chain| [chain, joint]).collect();
                 name.iter().for_each(|name| drop(names.joints.insert(name, Vec::clone(&ids))));
             }
             names.chains.insert(&data.name, chains);
@@ -179,12 +179,12 @@ impl PoseData {
         pose.root = self.root;
         for (name, sides) in &self.chains {
             for (&chain, turns) in names.chains[name.as_str()].iter().zip(sides) {
-                turns.iter().enumerate().for_each(|(joint, turn)| pose.set(JointId { chain, joint }, *turn));
+                pose.turns[chain][..turns.len()].copy_from_slice(turns);
             }
         }
         for (name, sides) in &self.turns {
             let joints = names.joints[name.as_str()].iter().zip(sides.iter().cycle());
-            joints.for_each(|(id, turn)| pose.set(*id, *turn));
+            joints.for_each(|(&[chain, joint], turn)| pose.turns[chain][joint] = *turn);
         }
         pose
     }

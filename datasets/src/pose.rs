@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Point3, Vector3};
 
-use crate::skeleton::{Chain, JointId, Skeleton};
+use crate::skeleton::{Chain, Skeleton};
 use crate::stream::Stream;
 use crate::trig::rotation;
 
@@ -15,7 +15,8 @@ pub(crate) type JointTurn = [f64; 3];
 pub(crate) struct Pose {
     /// Rotation of the whole body about its first node.
     pub(crate) root: JointTurn,
-    turns: Vec<Vec<JointTurn>>,
+    /// Per chain, one for each of its joints.
+    pub(crate) turns: Vec<Vec<JointTurn>>,
 }
 
 impl Pose {
@@ -23,11 +24,6 @@ impl Pose {
     pub(crate) fn rest(skeleton: &Skeleton) -> Self {
         let turns = skeleton.chains.iter().map(|c| vec![JointTurn::default(); c.joints.len()]).collect();
         Self { root: JointTurn::default(), turns }
-    }
-
-    /// Sets one joint.
-    pub(crate) fn set(&mut self, id: JointId, turn: JointTurn) {
-        self.turns[id.chain][id.joint] = turn;
     }
 
     /// A random variation: every turn is scaled by up to 15 %, the play of every joint is added, and half of
@@ -48,15 +44,11 @@ impl Pose {
         let flip = |[x, y, z]: JointTurn| [x, -y, -z];
         let mut pose = self.clone();
         pose.root = flip(self.root);
-        let mut c = 0;
-        while c < skeleton.chains.len() {
-            let paired = skeleton.chains.get(c + 1).is_some_and(|next| next.is_mirrored);
-            if paired {
-                pose.turns.swap(c, c + 1);
-                c += 2;
-            } else {
+        for (c, chain) in skeleton.chains.iter().enumerate() {
+            if chain.is_mirrored {
+                pose.turns.swap(c - 1, c);
+            } else if skeleton.chains.get(c + 1).is_none_or(|next| !next.is_mirrored) {
                 pose.turns[c].iter_mut().for_each(|t| *t = flip(*t));
-                c += 1;
             }
         }
         pose

@@ -30,13 +30,6 @@ pub(crate) struct Joint {
     pub(crate) play: [f64; 3],
 }
 
-/// Identifies a joint of a skeleton.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct JointId {
-    pub(crate) chain: usize,
-    pub(crate) joint: usize,
-}
-
 /// A sequence of bones, such as an arm or a spine.
 #[derive(Debug, Clone)]
 pub(crate) struct Chain {

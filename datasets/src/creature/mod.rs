@@ -19,7 +19,7 @@ use crate::implicit::ImplicitBody;
 use crate::model::BodyModel;
 use crate::pose::{Pose, PosedSkeleton};
 use crate::shape::genus;
-use crate::skeleton::{JointId, Skeleton};
+use crate::skeleton::Skeleton;
 use crate::stream::Stream;
 use draft::{Draft, PLAY};
 use plans::PLANS;
@@ -186,7 +186,7 @@ fn random_pose(skeleton: &Skeleton, stream: &mut Stream) -> Pose {
         for (j, joint) in chain.joints.iter().enumerate() {
             let [x, y, z] = joint.play.map(|play| play / PLAY);
             let [a, b] = side.map(|side| side + stream.uniform(-0.4, 0.4));
-            pose.set(JointId { chain: c, joint: j }, [a * x, stream.uniform(-y, y), b * z]);
+            pose.turns[c][j] = [a * x, stream.uniform(-y, y), b * z];
         }
     }
     pose

@@ -88,11 +88,8 @@ fn bracket(solid: &mut Solid, v: &[f64]) {
             let lower = solid.ring(outline.iter().map(place(0.0)));
             let upper = solid.ring(outline.iter().map(place(t)));
             // Exchanging x and z turns the circle over.
-            if up.z > 0.0 {
-                solid.wall(&upper, &lower)
-            } else {
-                solid.wall(&lower, &upper)
-            };
+            let [from, to] = if up.z > 0.0 { [&upper, &lower] } else { [&lower, &upper] };
+            solid.wall(from, to);
             rims[0].push(lower);
             rims[1].push(upper);
         }

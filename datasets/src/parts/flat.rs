@@ -54,11 +54,8 @@ fn flip_some(points: &[[f64; 2]], triangles: &mut [Triangle], good_enough: f64) 
                 (triangles[t], triangles[other]) = ([a, d, c], [d, b, c]);
                 owner.remove(&[a, b]);
                 owner.remove(&[b, a]);
-                for (edge, face) in
-                    [([a, d], t), ([d, c], t), ([c, a], t), ([d, b], other), ([b, c], other), ([c, d], other)]
-                {
-                    owner.insert(edge, face);
-                }
+                owner.extend([([a, d], t), ([d, c], t), ([c, a], t)]);
+                owner.extend([([d, b], other), ([b, c], other), ([c, d], other)]);
                 any = true;
                 break;
             }

@@ -85,11 +85,8 @@ impl Solid {
     /// Walls of an outline, outer or of a hole, between two heights: the lower and the upper loop.
     pub(super) fn prism(&mut self, outline: &[[f64; 2]], z: [f64; 2], is_hole: bool) -> [Loop; 2] {
         let [lower, upper] = z.map(|z| self.level(outline, z));
-        if is_hole {
-            self.wall(&upper, &lower);
-        } else {
-            self.wall(&lower, &upper);
-        }
+        let [from, to] = if is_hole { [&upper, &lower] } else { [&lower, &upper] };
+        self.wall(from, to);
         [lower, upper]
     }
 
