@@ -46,6 +46,8 @@ pub(crate) fn weighted(operator: &dyn SymmetricOperator, columns: &Matrix) -> Ma
 #[derive(Debug)]
 pub(crate) struct Lanczos<'a> {
     operator: &'a dyn SymmetricOperator,
+    /// The diagonal of `M`.
+    masses: Vec<f64>,
     basis: Strips,
     /// For each block `X_k` of the basis, `X_k' M C X_k` and its coupling `B` to the next block.
     blocks: Vec<[Matrix; 2]>,
@@ -61,8 +63,9 @@ impl<'a> Lanczos<'a> {
         let n = operator.order();
         let none = || Matrix::zeros(n, 0);
         let random = SplitMix(0x9e37_79b9_7f4a_7c15);
-        let mut process =
-            Self { operator, basis: Strips::new(n), blocks: Vec::new(), last: none(), next: none(), random };
+        let masses = operator.masses().map_or_else(|| vec![1.0; n], <[f64]>::to_vec);
+        let (basis, blocks) = (Strips::new(n), Vec::new());
+        let mut process = Self { operator, masses, basis, blocks, last: none(), next: none(), random };
         process.add_random(BLOCK);
         process
     }
@@ -172,12 +175,15 @@ impl<'a> Lanczos<'a> {
     /// `x' M y`, in eight independent chains of additions.
     fn inner(&self, x: &[f64], y: &[f64]) -> f64 {
         let mut sums = [0.0; 8];
-        let (done, masses) = (x.len() / 8 * 8, self.operator.masses());
-        let product = |i: usize| x[i] * y[i] * masses.map_or(1.0, |masses| masses[i]);
-        for start in (0..done).step_by(8) {
-            sums.iter_mut().enumerate().for_each(|(lane, sum)| *sum += product(start + lane));
+        let ((x, last_x), (y, last_y)) = (x.as_chunks::<8>(), y.as_chunks::<8>());
+        let (masses, last_masses) = self.masses.as_chunks::<8>();
+        for ((x, y), m) in x.iter().zip(y).zip(masses) {
+            for lane in 0..8 {
+                sums[lane] += x[lane] * y[lane] * m[lane];
+            }
         }
-        sums.iter().sum::<f64>() + (done..x.len()).map(product).sum::<f64>()
+        let last = last_x.iter().zip(last_y).zip(last_masses).map(|((x, y), m)| x * y * m);
+        sums.iter().sum::<f64>() + last.sum::<f64>()
     }
 
     /// The M-norm of each column.
