@@ -4,12 +4,12 @@ use std::borrow::Borrow;
 use std::time::Instant;
 
 use descriptors::LaplaceSpectrum;
-use geodesics::{DistanceSolver, Source, SpreadSamples};
+use geodesics::SpreadSamples;
 use maps::MapShape;
 
 use super::options::CorrespondOptions;
 use crate::error::Error;
-use crate::form::embed;
+use crate::form::{embed, from_cut};
 use base::Observer;
 use mesh::Surface;
 
@@ -53,16 +53,4 @@ impl<S: Borrow<Surface>> MappedSurface<S> {
     pub fn surface(&self) -> &Surface {
         self.surface.borrow()
     }
-}
-
-/// The distance of each vertex from the boundary; `None` without one.
-fn from_cut(surface: &Surface, solver: &dyn DistanceSolver) -> Result<Option<Vec<f64>>, Error> {
-    let (cut, _) = surface.boundary_vertices();
-    if cut.is_empty() {
-        return Ok(None);
-    }
-    let sources: Vec<Source> = cut.into_iter().map(Source::vertex).collect();
-    let mut from_cut = vec![f64::INFINITY; solver.n_vertices()];
-    solver.solve_into(&sources, f64::INFINITY, &mut from_cut)?;
-    Ok(Some(from_cut))
 }

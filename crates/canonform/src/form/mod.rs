@@ -26,6 +26,7 @@ pub use embedded::Embedded;
 pub use method::EmbedMethod;
 pub use options::{DescribeOptions, FormOptions};
 pub use part::describe_part;
+pub(crate) use part::from_cut;
 pub use plan::DISTANCES_LIMIT;
 pub use report::{EmbedReport, SecondsReport};
 pub use stress::{SharedStress, StressChoice, StressKind, StressOptions, StressReport};

@@ -2,7 +2,7 @@
 
 use base::Observer;
 use descriptors::PartDiscAreas;
-use geodesics::{Method, Source};
+use geodesics::{DistanceSolver, Method, Source};
 
 use super::embed::embed;
 use super::options::DescribeOptions;
@@ -45,12 +45,20 @@ pub fn describe_part(
     let part = surface.for_part(observer)?;
     let embedded = embed(&part, &options.form, observer)?;
     let masses = part.mesh().vertex_areas();
-    let (cut, length) = part.boundary_vertices();
-    let mut from_cut = vec![f64::INFINITY; masses.len()];
-    if !cut.is_empty() {
-        let sources: Vec<Source> = cut.into_iter().map(Source::vertex).collect();
-        let solver = Method::default().prepare(part.intrinsic(), observer)?;
-        solver.solve_into(&sources, f64::INFINITY, &mut from_cut)?;
-    }
+    let (_, length) = part.boundary_vertices();
+    let solver = Method::default().prepare(part.intrinsic(), observer)?;
+    let from_cut = from_cut(&part, solver.as_ref())?.unwrap_or_else(|| vec![f64::INFINITY; masses.len()]);
     Ok(PartDiscAreas::new(&embedded.distances, &masses, &from_cut, length)?)
+}
+
+/// The distance of each vertex from the boundary; `None` without one.
+pub(crate) fn from_cut(surface: &Surface, solver: &dyn DistanceSolver) -> Result<Option<Vec<f64>>, Error> {
+    let (cut, _) = surface.boundary_vertices();
+    if cut.is_empty() {
+        return Ok(None);
+    }
+    let sources: Vec<Source> = cut.into_iter().map(Source::vertex).collect();
+    let mut from_cut = vec![f64::INFINITY; solver.n_vertices()];
+    solver.solve_into(&sources, f64::INFINITY, &mut from_cut)?;
+    Ok(Some(from_cut))
 }
