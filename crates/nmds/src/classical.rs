@@ -63,7 +63,7 @@ fn embed(
     let eigen = decompose(&CenteredSquares { distances, unit })?;
     let columns = eigen.vectors.resize_horizontally(dim, 0.0);
     let rank = eigen.values.len();
-    Ok(Embedding::from_orthonormal(columns, eigen.values, unit, rank))
+    Ok(Embedding::from_orthonormal(columns, eigen.values, unit, rank).0)
 }
 
 /// The matrix `-1/2 J E J` of distances in units of `unit`, as an operator.

@@ -47,16 +47,12 @@ impl Embedding {
     ) -> Result<Self, NmdsError> {
         let inner = symmetric_eigen(inner)?;
         let columns = q * inner.vectors.columns(0, dim.min(inner.values.len()));
-        Ok(Self::from_orthonormal(columns.resize_horizontally(dim, 0.0), inner.values, unit, rank))
+        Ok(Self::from_orthonormal(columns.resize_horizontally(dim, 0.0), inner.values, unit, rank).0)
     }
 
-    /// Scales orthonormal columns by the roots of their eigenvalues and normalizes their signs.
-    pub(crate) fn from_orthonormal(columns: Matrix, eigenvalues: Vec<f64>, unit: f64, rank: usize) -> Self {
-        Self::from_orthonormal_with_factors(columns, eigenvalues, unit, rank).0
-    }
-
-    /// As [`from_orthonormal`](Self::from_orthonormal), with the factors that columns were multiplied by.
-    pub(crate) fn from_orthonormal_with_factors(
+    /// Scales orthonormal columns by the roots of their eigenvalues and normalizes their signs: with the factors that columns were
+    /// multiplied by.
+    pub(crate) fn from_orthonormal(
         mut columns: Matrix,
         eigenvalues: Vec<f64>,
         unit: f64,
@@ -85,7 +81,7 @@ impl Embedding {
         let (q, w) = thin_qr(&coords);
         let axes = symmetric_eigen(&(&w * w.transpose()))?;
         let eigenvalues = axes.values.iter().map(|value| value.max(0.0)).collect();
-        Ok(Self::from_orthonormal(q * axes.vectors, eigenvalues, unit, rank))
+        Ok(Self::from_orthonormal(q * axes.vectors, eigenvalues, unit, rank).0)
     }
 }
 

@@ -84,8 +84,7 @@ pub fn nystrom_extended(
     let (axes, values) = principal_axes(&(core * w.transpose()), &inner, dim)?;
     let mut axes = &inverse.basis * axes;
     let columns = product(distances, unit, &means, &axes)?;
-    let (embedding, factors) =
-        Embedding::from_orthonormal_with_factors(columns, values, unit, inverse.rank());
+    let (embedding, factors) = Embedding::from_orthonormal(columns, values, unit, inverse.rank());
     axes.column_iter_mut().zip(factors).for_each(|(mut axis, factor)| axis *= factor);
     Ok((embedding, OutOfSample { unit, means, axes }))
 }
