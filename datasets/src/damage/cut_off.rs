@@ -1,6 +1,7 @@
-//! Parts that are missing.
+//! Parts that are missing, and limbs that are longer.
 
 use mesh::TriMesh;
+use nalgebra::Vector3;
 use surface::{EdgeGraph, VertexId, components_of_faces};
 
 use crate::stream::Stream;
@@ -8,16 +9,41 @@ use crate::stream::Stream;
 /// Cuts off the end of a random limb with the given share of the area: what is nearest along edges to its tip. Only the
 /// largest piece stays.
 pub(super) fn cut_off(mesh: &TriMesh, share: f64, stream: &mut Stream) -> TriMesh {
+    let Some((_, lengths)) = limb(mesh, stream) else { return mesh.clone() };
+    let from_tip = |f: usize| mesh.faces[f].iter().map(|v| lengths[v.index()]).fold(0.0, f64::max);
+    let is_cut = first_faces(mesh, share * mesh.area(), from_tip);
+    largest_piece(with_faces(mesh, |f| !is_cut[f]))
+}
+
+/// The share of the area of the end of a limb that grows.
+const END: f64 = 0.06;
+
+/// Makes the end of a random limb longer by a share, evenly from its base to its tip.
+pub(super) fn lengthen(mesh: &TriMesh, by: f64, stream: &mut Stream) -> TriMesh {
+    let Some((tip, lengths)) = limb(mesh, stream) else { return mesh.clone() };
+    let from_tip = |f: usize| lengths[mesh.faces[f][0].index()];
+    let is_end = first_faces(mesh, END * mesh.area(), from_tip);
+    let reach = (0..mesh.n_faces()).filter(|f| is_end[*f]).map(from_tip).fold(0.0, f64::max);
+    let is_base = |length: &f64| (0.85 * reach..=reach).contains(length);
+    let base = || mesh.positions.iter().zip(&lengths).filter(|(_, length)| is_base(length));
+    let center = base().map(|(p, _)| p.coords).sum::<Vector3<f64>>() / base().count() as f64;
+    let growth = (mesh.positions[tip.index()].coords - center) * by;
+    let mut longer = mesh.clone();
+    for (p, length) in longer.positions.iter_mut().zip(&lengths) {
+        *p += growth * (1.0 - length / reach).max(0.0);
+    }
+    longer
+}
+
+/// The tip of a random limb, and the lengths of paths from there.
+fn limb(mesh: &TriMesh, stream: &mut Stream) -> Option<(VertexId, Vec<f64>)> {
     if mesh.faces.is_empty() {
-        return mesh.clone();
+        return None;
     }
     let edges = mesh.edge_graph();
     let first = mesh.faces[stream.below(mesh.n_faces())][0];
     let tip = tip(&edges, first);
-    let lengths = edges.from(tip);
-    let from_tip = |f: usize| mesh.faces[f].iter().map(|v| lengths[v.index()]).fold(0.0, f64::max);
-    let is_cut = first_faces(mesh, share * mesh.area(), from_tip);
-    largest_piece(with_faces(mesh, |f| !is_cut[f]))
+    Some((tip, edges.from(tip)))
 }
 
 /// Whether each face is among the first by `place` that cover an area.

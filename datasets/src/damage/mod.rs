@@ -37,6 +37,8 @@ pub enum Damage {
     Contact(u32),
     /// The end of a limb with this share of the area is cut off.
     CutOff(f64),
+    /// The end of a limb is longer by this share.
+    Lengthen(f64),
     /// A plane in a random direction cuts the shape, so that this share of the area stays.
     Slice(f64),
     /// This share of the vertices, and at least one, is displaced by 4 % of the diagonal of the bounding box.
@@ -97,6 +99,7 @@ impl Damage {
             Self::Weld(pair, n) => weld::weld(mesh, pair, n, &mut stream),
             Self::Contact(n) => weld::contact(mesh, n, &mut stream),
             Self::CutOff(share) => cut_off::cut_off(mesh, share, &mut stream),
+            Self::Lengthen(share) => cut_off::lengthen(mesh, share, &mut stream),
             Self::Slice(share) => slice::slice(mesh, share, &mut stream),
             Self::ShotNoise(share) => noise::shot_noise(mesh, share, diagonal(mesh), &mut stream),
             Self::Noise(share) => noise::noise(mesh, share * diagonal(mesh), &mut stream),
@@ -141,6 +144,7 @@ impl fmt::Display for Damage {
             Self::Contact(1) => f.write_str("a handle"),
             Self::Contact(n) => write!(f, "{n} handles"),
             Self::CutOff(share) => write!(f, "{} % cut off", percent(*share)),
+            Self::Lengthen(share) => write!(f, "a limb longer by {} %", percent(*share)),
             Self::Slice(share) => write!(f, "{} % behind a plane", percent(*share)),
             Self::ShotNoise(share) => write!(f, "shot noise {} %", percent(*share)),
             Self::Noise(share) => write!(f, "noise {} %", percent(*share)),
@@ -173,6 +177,7 @@ mod tests {
     /// One strength of every kind, and what is not graded.
     fn all() -> impl Iterator<Item = Damage> {
         let others = [Damage::Slice(0.7), Damage::Subdivide(1), Damage::Subdivide(2), Damage::Remesh];
+        let others = others.into_iter().chain([Damage::Lengthen(0.1)]);
         let graded = Damage::graded().into_iter().map(|(_, strengths)| strengths[1]);
         graded.chain(others).chain([Damage::Decimate(0.2), Damage::Move, Damage::Scale])
     }
