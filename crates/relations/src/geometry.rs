@@ -236,10 +236,7 @@ fn welded(mesh: &TriMesh, rounding: f64) -> TriMesh {
     let place = |p: &Point3<f64>| [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits());
     let mut same = |(v, p)| *first.entry(place(p)).or_insert(VertexId::from(v));
     let mesh = merged(mesh, &mesh.positions.iter().enumerate().map(&mut same).collect::<Vec<_>>());
-    let topology = mesh.topology();
-    let rim: BTreeSet<VertexId> =
-        topology.boundary_edges().flat_map(|edge| topology.edges()[edge.index()]).collect();
-    let rim: Vec<VertexId> = rim.into_iter().collect();
+    let rim: Vec<VertexId> = rim(&mesh).into_iter().collect();
     let at = |v: &VertexId| mesh.positions[v.index()];
     let Ok(nearest) = NearestPoints::new(rim.iter().map(at).collect()) else { return mesh };
     let mut into: Vec<VertexId> = (0..mesh.n_vertices()).map(VertexId::from).collect();
@@ -248,6 +245,12 @@ fn welded(mesh: &TriMesh, rounding: f64) -> TriMesh {
         into[v.index()] = near.min().unwrap_or(*v);
     }
     merged(&mesh, &into)
+}
+
+/// The vertices on edges of one face.
+pub(super) fn rim(mesh: &TriMesh) -> BTreeSet<VertexId> {
+    let topology = mesh.topology();
+    topology.boundary_edges().flat_map(|edge| topology.edges()[edge.index()]).collect()
 }
 
 /// The mesh with every vertex in the place of another one.

@@ -168,6 +168,25 @@ fn of_bodies(family: usize, observer: &dyn Observer) -> Result<Vec<RelatedPair>>
     Ok(others.chain(copies).chain(pieces).collect())
 }
 
+/// Shares by which a limb is longer.
+const LONGER: [f64; 3] = [0.02, 0.05, 0.1];
+
+/// A body of a family beside triangulations of it with one limb longer: the vertices, the share, and how surely both are called one
+/// surface.
+fn longer_limbs(family: usize, observer: &dyn Observer) -> Result<Vec<(usize, f64, f64)>> {
+    observer.step();
+    let n_vertices = VERTICES[family % VERTICES.len()];
+    let mesh = creature(3, [family, 0, 0], n_vertices)?;
+    let Some(own) = MeshGeometry::new(&mesh, None) else { return Ok(Vec::new()) };
+    let surely = |longer: f64, damage: Damage| {
+        let other = damage.apply(&Damage::Lengthen(longer).apply(&mesh, 7), 7);
+        let said = related(&own, &MeshGeometry::new(&other, None)?);
+        Some((n_vertices, longer, if said.kind.is_one_surface() { said.confidence } else { 0.0 }))
+    };
+    let damages = [Damage::Decimate(0.5), Damage::Subdivide(1), Damage::Remesh];
+    Ok(LONGER.iter().flat_map(|longer| damages.map(|damage| surely(*longer, damage))).flatten().collect())
+}
+
 /// The distance of a pair that was laid over each other, in multiples of what is allowed.
 fn ratio(pair: &RelatedPair) -> Option<f64> {
     pair.said.evidence.gap_ratio.filter(|ratio| ratio.is_finite() && *ratio > 0.0)
@@ -250,6 +269,9 @@ pub(crate) fn relations() -> Result<ExitCode> {
     };
     let fit = |known: &[&RelatedPair]| (boundary(known), scores(known));
     let stated = held_out(&pairs, |pair| &pair.families, fit, stated, &bars).concat();
+    bars.begin("lengthening limbs", n_families);
+    let longer = (0..n_families).into_par_iter().map(|family| longer_limbs(family, &bars));
+    let longer = longer.collect::<Result<Vec<_>>>()?.concat();
     bars.finish();
     let mut out = std::io::stdout().lock();
     let [n_others, n_copies] = counts;
@@ -260,5 +282,14 @@ pub(crate) fn relations() -> Result<ExitCode> {
         writeln!(out, "{name}: {score:.3} of {n}")?;
     }
     print_reliability(&mut out, "relation", &stated)?;
+    writeln!(
+        out,
+        "\n| vertices | a limb is longer by | pairs | one surface | at .9 |\n|---|---|---|---|---|"
+    )?;
+    for [n_vertices, i] in (0..9).map(|i| [VERTICES[i / 3], i % 3]) {
+        let told = || longer.iter().filter(|(n, by, _)| *n == n_vertices && *by == LONGER[i]);
+        let at = |least: f64| told().filter(|(.., surely)| *surely >= least).count();
+        writeln!(out, "| {n_vertices} | {} | {} | {} | {} |", LONGER[i], told().count(), at(0.5), at(0.9))?;
+    }
     Ok(ExitCode::SUCCESS)
 }
