@@ -167,7 +167,7 @@ impl MeshGeometry {
         self.exactness().bending > (1.0 + by) * other.exactness().bending
     }
 
-    fn exactness(&self) -> &Exactness {
+    pub(super) fn exactness(&self) -> &Exactness {
         self.exactness.get_or_init(|| {
             let mesh = self.mesh();
             let normals: Vec<Vector3<f64>> = (0..mesh.n_faces())

@@ -2,7 +2,7 @@
 
 use rigid::{MAX_DEVIATION, axis_deviation, rms_radius};
 
-use super::calibration::{ARCS, EXACT, MAX_NOISE};
+use super::calibration::{ARCS, EXACT, FARTHEST, MAX_NOISE};
 use super::geometry::MeshGeometry;
 use super::same_surface::{allowed_in_bodies, rms_chord_error};
 
@@ -24,6 +24,8 @@ const SPREAD_BY_GAP: f64 = 4.0;
 pub struct SurfaceInvariants {
     /// Number of vertices in different positions.
     pub n_vertices: usize,
+    /// Vertices without which the surface would be another one: as many if triangles are divided.
+    pub n_needed: usize,
     /// Root mean square distance from the centroid along the principal axes, descending, at unit area.
     pub spreads: [f64; 3],
     /// The enclosed volume at unit area, and the Euler characteristic; `None` for surfaces that are not closed.
@@ -45,8 +47,12 @@ impl SurfaceInvariants {
             return axis_deviation(self.spreads, other.spreads) < self.most_of_bodies(other);
         }
         let spread = self.spreads.iter().zip(&other.spreads).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
-        let flatness = if self.n_vertices == other.n_vertices { 0.0 } else { self.chords + other.chords };
-        let most = EXACT + ARCS * flatness + self.noise + other.noise;
+        let noise = self.noise + other.noise;
+        // Divided triangles leave arcs as they are; with noise, every vertex is needed.
+        let is_divided = self.n_needed == other.n_needed && noise < EXACT / FARTHEST;
+        let are_same_arcs = self.n_vertices == other.n_vertices || is_divided;
+        let flatness = if are_same_arcs { 0.0 } else { self.chords + other.chords };
+        let most = EXACT + ARCS * flatness + noise;
         let is_same_solid = match (self.closed, other.closed) {
             (Some((x, handles)), Some((y, others))) => handles == others && (x - y).abs() < most,
             _ => true,
@@ -76,6 +82,7 @@ impl MeshGeometry {
         let is_mechanical = self.is_mechanical();
         SurfaceInvariants {
             n_vertices: self.n_vertices(),
+            n_needed: self.exactness().n_needed,
             spreads: self.surface.axis_std,
             closed: self.closed(),
             chords: rms_chord_error(self),
