@@ -1,12 +1,26 @@
 //! Laws of the metric.
 
-use canonform_descriptors::{Boundary, ShapeDistance, ShapeMetric, SignatureKind};
+use canonform_descriptors::{Boundary, ShapeDistance, ShapeMetric, Signature, SignatureKind};
 
 #[test]
 fn weights_sum_to_one() {
     let total: f64 = SignatureKind::INTRINSIC.into_iter().map(ShapeMetric::weight).sum();
     assert!((total - 1.0).abs() < 1e-9);
     assert!(SignatureKind::ALL.into_iter().all(|kind| ShapeMetric::unit(kind) > 0.0));
+}
+
+#[test]
+fn fused_vectors_add_weighted_signatures_that_may_bend_and_the_size() {
+    let fused = |value: f64, area: Option<f64>| {
+        let of = |kind: SignatureKind| Signature { kind, values: vec![value; kind.n_values()] };
+        ShapeMetric::fuse(&[SignatureKind::Rigid, SignatureKind::ShapeDna].map(of), area)
+    };
+    let [weight, unit] = [ShapeMetric::weight, ShapeMetric::unit].map(|of| of(SignatureKind::ShapeDna));
+    let found = ShapeMetric::fused(&fused(1.0, None), &fused(1.5, None));
+    assert!((found / (0.5 * (20.0 * weight).sqrt() / unit) - 1.0).abs() < 1e-5);
+    // Lengths differ by two units, areas by four.
+    let found = ShapeMetric::fused(&fused(1.0, Some(1.0)), &fused(1.0, Some(1.05f64.powi(4))));
+    assert!((found - 2.0).abs() < 1e-6);
 }
 
 #[test]
@@ -21,6 +35,7 @@ fn values_beyond_four_deviations_of_their_kind_count_linearly() {
             vector[start] = change as f32;
             ShapeMetric::robust(&vector, &other)
         };
+        assert_eq!(ShapeMetric::limits()[start], limit as f32);
         assert!((at(0.99 * limit) / (0.99 * limit) - 1.0).abs() < 1e-6, "small changes count fully");
         for times in [2.0, 5.0, 20.0] {
             let expected = limit * (2.0 * times - 1.0f64).sqrt();

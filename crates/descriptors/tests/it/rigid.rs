@@ -36,13 +36,16 @@ fn powers_of_normals_are_legendre_polynomials_of_their_angles() {
 
 #[test]
 fn values_of_a_cube_are_known() {
-    let Signature { values, .. } = rigid_signature(&shapes::cube(3)).unwrap();
+    let Signature { values, .. } = rigid_signature(&shapes::cube(0)).unwrap();
     assert_eq!(values.len(), SignatureKind::Rigid.n_values());
     let side = 1.0 / 6.0f64.sqrt();
     assert!((values[0] - side).abs() < 1e-12);
     // The square of a coordinate is (side / 2)² on two faces and a third of it on four.
     let spread = side / 2.0 * ((2.0 + 4.0 / 3.0) / 6.0f64).sqrt();
     assert!(values[1..4].iter().all(|x| (x - spread).abs() < 1e-12), "{values:?}");
+    // Of the distances between corners, the shortest are sides and the longest diagonals, divided by four.
+    let expected = [side / 4.0, side / 4.0 * 3f64.sqrt()];
+    assert!([4, 19].iter().zip(expected).all(|(i, x)| (values[*i] - x).abs() < 1e-12), "{values:?}");
 }
 
 #[test]

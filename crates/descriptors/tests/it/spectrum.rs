@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use canonform_descriptors::{DescriptorError, LaplaceSpectrum};
+use canonform_descriptors::{DescriptorError, LaplaceSpectrum, geodesic_spectrum};
+use linalg::{LandmarkDistances, Matrix};
 use mesh::{TriMesh, shapes};
 
 fn spectrum(mesh: &TriMesh, m: usize) -> LaplaceSpectrum {
@@ -51,4 +52,18 @@ fn every_component_adds_a_constant_function() {
 fn a_surface_without_area_has_no_spectrum() {
     let none = LaplaceSpectrum::new(&TriMesh::default().intrinsic(), 5, &());
     assert_eq!(none, Err(DescriptorError::NoExtent { n_points: 0 }));
+}
+
+#[test]
+fn seven_points_have_the_spectrum_of_the_roots_of_their_distances() {
+    let columns = Matrix::from_fn(7, 7, |i, j| if i == j { 0.0 } else { 4.0 });
+    let distances = LandmarkDistances::new((0..7).collect(), columns).unwrap();
+    // As many samples are all used: a seventh of √(d / √A), 6 times once and -1 times for the rest.
+    let values = geodesic_spectrum(&distances, &[2.0; 7], 9.0).unwrap().values;
+    for (i, value) in values.into_iter().enumerate() {
+        let times = [6.0, 1.0, 6e-4][usize::from(i > 0) + usize::from(i > 6)];
+        assert!((value - (times / 7.0 * (4.0 / 3.0f64).sqrt()).ln()).abs() < 1e-9, "{i}: {value}");
+    }
+    let refused = geodesic_spectrum(&distances, &[2.0; 7], 0.0);
+    assert_eq!(refused, Err(DescriptorError::NoExtent { n_points: 7 }));
 }
