@@ -54,13 +54,15 @@ fn means_weigh_queries_alike() {
 }
 
 #[test]
-fn precision_falls_with_recall_and_is_one_for_perfect_rankings() {
+fn precision_falls_with_recall() {
     let (distances, labels) = example();
     let curve = precision_recall(&distances, &labels, 11).unwrap();
     assert!(curve.windows(2).all(|w| w[0] >= w[1]) && curve[0] < 1.0 && curve[10] > 0.0);
-    let separate = DistanceMatrix::from_pairs(6, |i, j| if i / 3 == j / 3 { 1.0 } else { 9.0 }).unwrap();
-    let labels = Labels::new(&["a", "a", "a", "b", "b", "b"]);
-    assert_eq!(precision_recall(&separate, &labels, 5), Ok(vec![1.0; 5]));
+    // The two outer ones of three find another shape second.
+    let distance = |i: usize, j: usize| if j < 3 { (j - i) as f64 } else { 1.5 };
+    let three = DistanceMatrix::from_pairs(4, distance).unwrap();
+    let curve = precision_recall(&three, &Labels::new(&["a", "a", "a", "b"]), 2).unwrap();
+    assert!(curve[0] == 1.0 && (curve[1] - 7.0 / 9.0).abs() < 1e-15);
 }
 
 #[test]
