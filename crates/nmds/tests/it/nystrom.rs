@@ -3,14 +3,6 @@ use linalg::{LandmarkDistances, Matrix};
 
 use crate::support::{Cloud, landmark_distances, procrustes_free_gap, scaled};
 
-const ALL: [Regularization; 5] = [
-    Regularization::LowRank { rank: None },
-    Regularization::Rpi { alpha: RpiAlpha::Relative(1e-10) },
-    Regularization::Rpi { alpha: RpiAlpha::Relative(1e-8) },
-    Regularization::None,
-    Regularization::Cur { rank: None },
-];
-
 fn low_rank(rank: usize) -> Regularization {
     Regularization::LowRank { rank: Some(rank) }
 }
@@ -65,7 +57,7 @@ fn a_search_begins_with_the_rank_that_is_given() {
 #[test]
 fn a_single_sample_gives_zero_coordinates() {
     let one = LandmarkDistances::new(vec![3], Matrix::from_fn(8, 1, |i, _| (i as f64 - 3.0).abs())).unwrap();
-    for regularization in ALL {
+    for regularization in Regularization::all() {
         let embedding = nystrom(&one, regularization, 1).unwrap();
         assert_eq!(embedding.coords, Matrix::zeros(8, 1), "{regularization:?}");
     }

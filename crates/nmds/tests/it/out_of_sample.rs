@@ -6,12 +6,7 @@ use crate::support::{Cloud, landmark_distances};
 #[test]
 fn points_of_the_embedding_keep_their_places() {
     let distances = landmark_distances(&Cloud::new(400, 6, 3), 30);
-    for regularization in [
-        Regularization::LowRank { rank: None },
-        Regularization::Rpi { alpha: RpiAlpha::default() },
-        Regularization::None,
-        Regularization::Cur { rank: None },
-    ] {
+    for regularization in Regularization::all() {
         let (embedding, extension) = nystrom_extended(&distances, regularization, 3).unwrap();
         let placed = extension.place(&distances.to_matrix().unwrap()).unwrap();
         let gap = (placed - &embedding.coords).amax();
