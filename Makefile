@@ -5,7 +5,7 @@ OUT ?= out
 # For `make reproduce`: a folder of meshes with the classes of the paper. Default: the built-in dataset.
 DATASET ?=
 
-.PHONY: help setup build run test test-all test-python wheels reference notebooks lint-packaging lint bench bench-peers bench-nmds bench-preparation bench-search bench-capacity bench-duplicates bench-maps bench-packages fmt doc guide reproduce report paper measure plotly deny sbom fuzz fuzz-seeds package ci clean
+.PHONY: help setup build run test test-all test-python wheels reference notebooks lint-packaging lint bench bench-peers bench-nmds bench-preparation bench-search bench-capacity bench-duplicates bench-maps bench-packages fmt doc guide reproduce report paper measure plotly deny mutants sbom fuzz fuzz-seeds package ci clean
 
 help: ## List these commands
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-17s %s\n", $$1, $$2}'
@@ -122,6 +122,15 @@ plotly: ## Build the bundle of plotly.js that the pages embed (needs Node 20 and
 deny: ## Check licences and sources of dependencies with cargo-deny (installs it if missing)
 	@command -v cargo-deny >/dev/null || $(CARGO) install --locked cargo-deny
 	cargo-deny --all-features check licenses bans sources
+
+# Of `make mutants`: crates, and which part of their mutants to try.
+CRATES ?= retrieval nmds descriptors
+SHARD ?= 0/8
+
+mutants: ## Change expressions of CRATES one at a time and list in OUT/mutants.out what no test notices, an eighth by default (installs cargo-mutants if missing)
+	@command -v cargo-mutants >/dev/null || $(CARGO) install --locked cargo-mutants
+	@mkdir -p $(OUT)
+	$(CARGO) mutants $(CRATES:%=--package canonform-%) --shard $(SHARD) --output $(OUT) -- --locked --tests
 
 sbom: ## Write OUT/sbom, CycloneDX lists of the dependencies of both programs (installs cargo-cyclonedx if missing)
 	@command -v cargo-cyclonedx >/dev/null || $(CARGO) install --locked cargo-cyclonedx
