@@ -112,9 +112,7 @@ fn scale(links: &[Neighbor]) -> f64 {
 
 /// Adds the query to a list that it is near enough to, unless it is there.
 fn enter(links: &mut Vec<Neighbor>, query: Neighbor) {
-    let is_full = links.len() >= LINKS;
-    let is_near = links.last().is_none_or(|last| !is_full || query.distance < last.distance);
-    if is_near && !links.iter().any(|link| link.index == query.index) {
+    if !links.iter().any(|link| link.index == query.index) {
         links.insert(links.partition_point(|link| link.distance <= query.distance), query);
         links.truncate(LINKS);
     }
