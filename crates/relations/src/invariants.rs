@@ -46,15 +46,21 @@ impl SurfaceInvariants {
         if !(self.is_mechanical && other.is_mechanical) {
             return axis_deviation(self.spreads, other.spreads) < self.most_of_bodies(other);
         }
-        let spread = self.spreads.iter().zip(&other.spreads).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
         let noise = self.noise + other.noise;
+        let is_exact = noise < EXACT / FARTHEST;
+        // Noise enlarges the area, so the unit of a noisy surface is another one.
+        let unit = if is_exact { 1.0 } else { rms_radius(self.spreads) / rms_radius(other.spreads) };
+        let apart = self.spreads.iter().zip(&other.spreads).map(|(x, y)| (x - unit * y).abs());
+        let spread = apart.fold(0.0, f64::max);
         // Divided triangles leave arcs as they are; with noise, every vertex is needed.
-        let is_divided = self.n_needed == other.n_needed && noise < EXACT / FARTHEST;
+        let is_divided = self.n_needed == other.n_needed && is_exact;
         let are_same_arcs = self.n_vertices == other.n_vertices || is_divided;
         let flatness = if are_same_arcs { 0.0 } else { self.chords + other.chords };
         let most = EXACT + ARCS * flatness + noise;
         let is_same_solid = match (self.closed, other.closed) {
-            (Some((x, handles)), Some((y, others))) => handles == others && (x - y).abs() < most,
+            (Some((x, handles)), Some((y, others))) => {
+                handles == others && (x - unit.powi(3) * y).abs() < most
+            }
             _ => true,
         };
         spread < most && is_same_solid
