@@ -55,6 +55,12 @@ fn a_search_begins_with_the_rank_that_is_given() {
 }
 
 #[test]
+fn the_strength_of_the_regularization_is_a_number_or_that_of_the_paper() {
+    assert_eq!(["paper".parse(), "1e-8".parse()], [Ok(RpiAlpha::Paper), Ok(RpiAlpha::Relative(1e-8))]);
+    assert!("half".parse::<RpiAlpha>().is_err());
+}
+
+#[test]
 fn a_single_sample_gives_zero_coordinates() {
     let one = LandmarkDistances::new(vec![3], Matrix::from_fn(8, 1, |i, _| (i as f64 - 3.0).abs())).unwrap();
     for regularization in Regularization::all() {
