@@ -177,7 +177,8 @@ impl Repair<'_> {
     /// The surface after welding, with faces split at the vertices that lie on their boundary edges.
     fn without_t_junctions(&mut self) -> Result<IntrinsicMesh, Exceeded> {
         let mut surface = self.welded()?;
-        for _ in 0..if self.weld == Weld::None { 0 } else { MAX_PASSES } {
+        let n_passes = if self.weld == Weld::None { 0 } else { MAX_PASSES };
+        for _ in 0..n_passes {
             self.budget.check()?;
             let Some(faces) = self.close_t_junctions(surface.topology()) else { break };
             surface = self.measured(faces);
