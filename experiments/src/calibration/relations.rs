@@ -177,10 +177,10 @@ fn longer_limbs(family: usize, observer: &dyn Observer) -> Result<Vec<(usize, f6
     observer.step();
     let n_vertices = VERTICES[family % VERTICES.len()];
     let mesh = creature(3, [family, 0, 0], n_vertices)?;
-    let Some(own) = MeshGeometry::new(&mesh, None) else { return Ok(Vec::new()) };
+    let Some(own) = geometry(&mesh) else { return Ok(Vec::new()) };
     let surely = |longer: f64, damage: Damage| {
         let other = damage.apply(&Damage::Lengthen(longer).apply(&mesh, 7), 7);
-        let said = related(&own, &MeshGeometry::new(&other, None)?);
+        let said = related(&own, &geometry(&other)?);
         Some((n_vertices, longer, if said.kind.is_one_surface() { said.confidence } else { 0.0 }))
     };
     let damages = [Damage::Decimate(0.5), Damage::Subdivide(1), Damage::Remesh];
