@@ -24,7 +24,7 @@ const SPREAD_BY_GAP: f64 = 4.0;
 pub struct SurfaceInvariants {
     /// Number of vertices in different positions.
     pub n_vertices: usize,
-    /// Vertices without which the surface would be another one: as many if triangles are divided.
+    /// Vertices without which a part would be another one: as many if triangles are divided. All of a body.
     pub n_needed: usize,
     /// Root mean square distance from the centroid along the principal axes, descending, at unit area.
     pub spreads: [f64; 3],
@@ -88,7 +88,7 @@ impl MeshGeometry {
         let is_mechanical = self.is_mechanical();
         SurfaceInvariants {
             n_vertices: self.n_vertices(),
-            n_needed: self.exactness().n_needed,
+            n_needed: if is_mechanical { self.exactness().n_needed } else { self.n_vertices() },
             spreads: self.surface.axis_std,
             closed: self.closed(),
             chords: rms_chord_error(self),
