@@ -53,14 +53,18 @@ fn card(file: &DuplicateFile, title: &str, words: &str, search: &ShapeSearch) ->
     ))
 }
 
-/// Size of the file, lengths of its box, the day of its last change, its other names, and whether it stays anyway.
+/// Size of the file, lengths of its box, the day of its last change, its other names, and whether and why it stays.
 fn facts(file: &DuplicateFile) -> String {
     let bytes = file.bytes.map(|bytes| decimal_bytes(bytes.into()));
     let size = file.size.map(|size| size.map(in_four_digits).join(" × "));
     let day = file.modified.and_then(|seconds| chrono::DateTime::from_timestamp(seconds as i64, 0));
     let day = day.map(|day| day.format("%Y-%m-%d").to_string());
     let links = (!file.links.is_empty()).then(|| format!("also {}", one_line(&file.links.join(", "))));
-    let stays = file.reference.then(|| "reference".to_owned());
+    let stays = match file {
+        DuplicateFile { reference: true, .. } => Some("reference".to_owned()),
+        DuplicateFile { is_linked: true, .. } => Some("stays: a link or in an archive".to_owned()),
+        _ => None,
+    };
     [bytes, size, day, links, stays].into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
