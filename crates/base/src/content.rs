@@ -94,12 +94,9 @@ impl FromStr for ContentHash {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let digits = text
-            .as_bytes()
-            .chunks(2)
-            .map(|pair| std::str::from_utf8(pair).ok().and_then(|pair| u8::from_str_radix(pair, 16).ok()));
-        let bytes: Option<Vec<u8>> = if text.len() == 64 { digits.collect() } else { None };
-        let bytes: Option<[u8; 32]> = bytes.and_then(|bytes| bytes.try_into().ok());
+        let digits: Option<Vec<u8>> = text.chars().map(|digit| Some(digit.to_digit(16)? as u8)).collect();
+        let digits: Option<[u8; 64]> = digits.and_then(|digits| digits.try_into().ok());
+        let bytes = digits.map(|digits| std::array::from_fn(|i| digits[2 * i] << 4 | digits[2 * i + 1]));
         bytes.map(Self).ok_or_else(|| format!("`{text}` is not 64 hexadecimal digits"))
     }
 }
@@ -128,7 +125,8 @@ mod tests {
         assert_eq!(hash.to_string(), empty);
         assert_eq!(empty.parse(), Ok(hash));
         assert_ne!(ContentHash::of(&["ab", "c"]), ContentHash::of(&["a", "bc"]));
-        for bad in ["", "e3", &empty[1..], &empty.replace('e', "x"), &format!("{empty}00")] {
+        let [no_digit, signed] = [('e', "x"), ('e', "+")].map(|(from, to)| empty.replace(from, to));
+        for bad in ["", "e3", &empty[1..], &no_digit, &signed, &format!("{empty}00")] {
             assert!(bad.parse::<ContentHash>().is_err(), "{bad}");
         }
     }
