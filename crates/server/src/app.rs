@@ -34,7 +34,8 @@ pub(crate) struct App {
     /// Bytes of uploads for which there is memory.
     pub(crate) uploads: Arc<Semaphore>,
     pub(crate) duplicates: Duplicates,
-    measured: Cache<String, Arc<Measured>>,
+    /// By the content of the mesh and the options, as a mesh has another form with other options.
+    measured: Cache<(ContentHash, String), Arc<Measured>>,
     pub(crate) thumbnails: Cache<String, Bytes>,
     queries: Cache<String, Arc<Query>>,
 }
@@ -90,7 +91,7 @@ impl App {
     ) -> Result<Arc<Measured>, Error> {
         let index = collection.search.index();
         let content = index.entry(id)?.content;
-        let key = measured_key(&content, &index.options);
+        let key = (content, index.options.clone());
         if let Some(known) = self.measured.get(&key) {
             return Ok(known);
         }
@@ -104,7 +105,7 @@ impl App {
     /// What [`indexed`](Self::indexed) costs, in seconds: nothing if the shape is in the cache.
     pub(crate) fn cost(&self, collection: &Collection, id: &str) -> f64 {
         let Some(shape) = collection.shape(id) else { return 0.0 };
-        let key = measured_key(&shape.content, &collection.search.index().options);
+        let key = (shape.content, collection.search.index().options.clone());
         let is_known = self.measured.get(&key).is_some();
         if is_known { 0.0 } else { collection.n_vertices(id) as f64 * cost::MEASURED_VERTEX }
     }
@@ -134,9 +135,4 @@ impl App {
             ApiError::new(StatusCode::GONE, "this upload has expired").with_remedy("choose the file again")
         })
     }
-}
-
-/// A mesh gives another form with other options.
-fn measured_key(content: &ContentHash, options: &str) -> String {
-    format!("{content} {options}")
 }

@@ -40,22 +40,18 @@ pub(crate) fn router() -> Router<Arc<App>> {
         .route("/api/duplicates", get(duplicates))
         .route("/api/openapi.json", get(openapi))
         .route("/healthz", get(health))
-        .fallback(not_found)
-        .method_not_allowed_fallback(wrong_method)
+        .fallback(|| async { no_route(StatusCode::NOT_FOUND, "not found") })
+        .method_not_allowed_fallback(|| async {
+            no_route(StatusCode::METHOD_NOT_ALLOWED, "method not allowed")
+        })
 }
 
 async fn openapi() -> impl IntoResponse {
     ([(header::CONTENT_TYPE, "application/json")], OPENAPI.as_str())
 }
 
-async fn not_found() -> ApiError {
-    ApiError::new(StatusCode::NOT_FOUND, "not found")
-        .with_remedy("see /api/openapi.json for all paths and methods")
-}
-
-async fn wrong_method() -> ApiError {
-    ApiError::new(StatusCode::METHOD_NOT_ALLOWED, "method not allowed")
-        .with_remedy("see /api/openapi.json for all paths and methods")
+fn no_route(status: StatusCode, error: &str) -> ApiError {
+    ApiError::new(status, error).with_remedy("see /api/openapi.json for all paths and methods")
 }
 
 /// The duplicates of the index, or how far the search for them is.

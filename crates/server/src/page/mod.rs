@@ -1,13 +1,12 @@
 //! The pages: files embedded in the program.
 
-use std::collections::hash_map::DefaultHasher;
-use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
 use axum::Router;
 use axum::body::Bytes;
 use axum::http::HeaderMap;
 use axum::routing::get;
+use canonform::ContentHash;
 
 use crate::api::{is_known, tag, tagged};
 use crate::app::App;
@@ -42,9 +41,7 @@ pub(crate) fn router() -> Router<Arc<App>> {
     let pages = pages.map(|(path, text)| (path, HTML, Bytes::from(whole(text))));
     let files = files.map(|(path, kind, text)| (path, kind, Bytes::from_static(text.as_bytes())));
     pages.into_iter().chain(files).fold(Router::new(), |router, (path, kind, text)| {
-        let mut hash = DefaultHasher::new();
-        text.hash(&mut hash);
-        let tag = tag(&format!("{:016x}", hash.finish()));
+        let tag = tag(&ContentHash::of(&[&text]).to_string());
         let answer = move |headers: HeaderMap| async move {
             let content = (!is_known(&headers, &tag)).then_some(text);
             tagged(tag, kind, content)
