@@ -1,7 +1,6 @@
 //! One module per command.
 
 mod compare;
-mod completions;
 mod convert;
 mod duplicates;
 mod embed;
@@ -17,9 +16,10 @@ mod render;
 mod search;
 mod serve;
 
+use std::io::Write;
 use std::process::ExitCode;
 
-use crate::args::{Command, Common};
+use crate::args::{Command, Common, program};
 
 pub(crate) fn run(command: &Command, common: &Common) -> anyhow::Result<ExitCode> {
     match command {
@@ -38,6 +38,12 @@ pub(crate) fn run(command: &Command, common: &Common) -> anyhow::Result<ExitCode
         Command::Evaluate(args) => evaluate::evaluate(args, common),
         Command::Serve(args) => serve::serve(args),
         Command::Generate(args) => generate::generate(args, common),
-        Command::Completions { shell } => completions::completions(*shell),
+        Command::Completions { shell } => {
+            // Written at once: the library panics if the pipe is closed.
+            let mut script = Vec::new();
+            clap_complete::generate(*shell, &mut program(), "canonform", &mut script);
+            std::io::stdout().lock().write_all(&script)?;
+            Ok(ExitCode::SUCCESS)
+        }
     }
 }
