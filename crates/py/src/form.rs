@@ -41,8 +41,7 @@ impl Form {
             let message = format!("a mesh has 3 dimensions, not {}; leave out n_components=", coords.ncols());
             return Err(Exception::EmbeddingError.with(&message));
         }
-        let points: Vec<_> = coords.row_iter().map(|row| [row[0], row[1], row[2]].into()).collect();
-        Ok(self.surface.input.with_positions(|v| points[v.index()]))
+        Ok(self.surface.input.with_positions(|v| [0, 1, 2].map(|axis| coords[(v.index(), axis)]).into()))
     }
 }
 
