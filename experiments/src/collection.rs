@@ -157,16 +157,14 @@ impl SurfaceCollection {
     }
 
     pub(crate) fn setting(&self) -> Setting {
-        if self.classes == PAPER_CLASSES {
-            if self.is_built_in() { Setting::BuiltIn } else { Setting::Paper }
-        } else if BTreeSet::from_iter(&self.classes).into_iter().eq(TOSCA_CLASSES) {
-            Setting::Tosca
-        } else if BTreeSet::from_iter(&self.classes).into_iter().eq(MAPPED_CLASSES)
-            && self.shapes.iter().all(|shape| shape.surface.mesh().n_vertices() >= FULL_RESOLUTION)
-        {
-            Setting::FullResolution
-        } else {
-            Setting::Other
+        let has = |classes: &[&str]| BTreeSet::from_iter(&self.classes).into_iter().eq(classes);
+        let is_full = |shape: &LabeledSurface| shape.surface.mesh().n_vertices() >= FULL_RESOLUTION;
+        match self.classes == PAPER_CLASSES {
+            true if self.is_built_in() => Setting::BuiltIn,
+            true => Setting::Paper,
+            false if has(&TOSCA_CLASSES) => Setting::Tosca,
+            false if has(&MAPPED_CLASSES) && self.shapes.iter().all(is_full) => Setting::FullResolution,
+            false => Setting::Other,
         }
     }
 

@@ -10,9 +10,6 @@ use crate::collection::Setting;
 use crate::sweep::MeasuredNumbers;
 use crate::text::filled;
 
-/// Numbers printed in the paper, by row (a class, or a number of vertices) and method.
-pub(crate) type Printed = BTreeMap<String, BTreeMap<String, f64>>;
-
 /// A configuration. Its texts state numbers of the run, see [`text`](crate::text).
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -46,7 +43,8 @@ pub(crate) struct Options {
     pub(crate) counts: Vec<usize>,
     /// Decimal logarithms of alpha.
     pub(crate) exponents: Vec<f64>,
-    pub(crate) printed: Printed,
+    /// Numbers printed in the paper, by row (a class, or a number of vertices) and method.
+    pub(crate) printed: BTreeMap<String, BTreeMap<String, f64>>,
     /// Shapes of each class that are searched for; of `robustness`, of all classes together.
     pub(crate) queries: usize,
     /// Nearest neighbors that vote.

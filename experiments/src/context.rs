@@ -12,7 +12,7 @@ use report::record::{Plot, RunProvenance, Series};
 
 use crate::args::command;
 use crate::collection::{Setting, SurfaceCollection};
-use crate::config::{Config, Options, Printed};
+use crate::config::{Config, Options};
 use crate::machine;
 use crate::specimen::Specimen;
 use crate::sweep::{MeasuredNumbers, curves, note, places, plots};
@@ -35,8 +35,8 @@ pub(crate) struct Context<'a> {
 
 impl Context<'_> {
     /// A number printed in the paper, if the collection is that of the paper.
-    pub(crate) fn printed(&self, printed: &Printed, row: &str, method: &str) -> Option<f64> {
-        let number = printed.get(row)?.get(method).copied();
+    pub(crate) fn printed(&self, row: &str, method: &str) -> Option<f64> {
+        let number = self.options.printed.get(row)?.get(method).copied();
         number.filter(|_| self.collection.setting() == Setting::Paper)
     }
 

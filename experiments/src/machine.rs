@@ -7,11 +7,9 @@ use chrono::{DateTime, Utc};
 /// Processor, worker threads and operating system.
 pub(crate) fn described() -> String {
     let os = std::env::consts::OS;
+    let processor = processor().unwrap_or_else(|| std::env::consts::ARCH.to_owned());
     let threads = rayon::current_num_threads();
-    format!(
-        "{}, {threads} worker threads, {os}",
-        processor().unwrap_or_else(|| std::env::consts::ARCH.to_owned())
-    )
+    format!("{processor}, {threads} worker thread{}, {os}", if threads == 1 { "" } else { "s" })
 }
 
 /// The model of the processor, if the system tells it.

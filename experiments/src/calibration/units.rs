@@ -16,6 +16,7 @@ use report::{Cell, Table};
 
 use super::{boundaries, described};
 use crate::parts::parts;
+use crate::sweep::mean;
 
 /// Vertices of the shapes of each seed, from 1 on, since collections mix resolutions.
 const VERTICES: [usize; 5] = [3400, 1500, 8000, 2500, 5000];
@@ -58,7 +59,7 @@ pub(crate) fn units() -> Result<ExitCode> {
             let of = |shape: &DescribedBody| signature(&shape.description, kind);
             of(a).zip(of(b)).map_or(f64::NAN, |(a, b)| a.distance(&b))
         };
-        let means = [&within, &between].map(|pairs| mean_square(pairs.iter().map(distance)));
+        let means = [&within, &between].map(|pairs| mean(pairs.iter().map(|pair| distance(pair).powi(2))));
         let in_use = [ShapeMetric::unit(kind), ShapeMetric::weight(kind)];
         parts.push((kind.name(), means, components(&shapes, kind), in_use));
     }
@@ -69,7 +70,7 @@ pub(crate) fn units() -> Result<ExitCode> {
         // Alignment takes long.
         let close: Vec<_> = pairs.iter().filter(|(a, b)| a.seed == 1 && b.seed == 1).collect();
         let rms = |(a, b): &&BodyPair<'_>| ShapePair::new([&a.shape, &b.shape]).best().gap.rms;
-        mean_square(close.par_iter().map(rms).collect::<Vec<f64>>().into_iter())
+        mean(close.par_iter().map(|pair| rms(pair).powi(2)).collect::<Vec<f64>>())
     });
     parts.push(("aligned forms", means, 1.0, [ShapeMetric::FORM_UNIT, ShapeMetric::FORM_WEIGHT]));
     bars.finish();
@@ -103,8 +104,8 @@ fn components(shapes: &[DescribedBody], kind: SignatureKind) -> f64 {
             .filter(|shape| shape.label == family.name())
             .filter_map(|shape| signature(&shape.description, kind).map(|s| s.values))
             .collect();
-        let mean = |i: usize| members.iter().map(|values| values[i]).sum::<f64>() / members.len() as f64;
-        let means: Vec<f64> = (0..n_values).map(mean).collect();
+        let of = |i: usize| mean(members.iter().map(|values| values[i]));
+        let means: Vec<f64> = (0..n_values).map(of).collect();
         let centered = Matrix::from_fn(members.len(), n_values, |row, i| members[row][i] - means[i]);
         covariance += centered.transpose() * centered;
     }
@@ -125,14 +126,9 @@ fn rigid() -> Result<[f64; 2]> {
     let rms = |of: &dyn Fn(&str, &str) -> bool| {
         let pairs = found.iter().enumerate().flat_map(|(i, a)| found[..i].iter().map(move |b| (a, b)));
         let pairs = pairs.filter(|(a, b)| of(&a.0, &b.0));
-        mean_square(pairs.map(|(a, b)| a.1.distance(&b.1))).sqrt()
+        mean(pairs.map(|(a, b)| a.1.distance(&b.1).powi(2))).sqrt()
     };
     Ok([rms(&|a, b| a == b), rms(&|a, b| a != b && family(a) == family(b))])
 }
 
 type BodyPair<'a> = (&'a DescribedBody, &'a DescribedBody);
-
-fn mean_square(values: impl Iterator<Item = f64>) -> f64 {
-    let (sum, n) = values.fold((0.0, 0usize), |(sum, n), value| (sum + value * value, n + 1));
-    sum / n.max(1) as f64
-}

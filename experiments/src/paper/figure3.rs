@@ -57,8 +57,7 @@ pub(crate) fn figure3(context: &Context<'_>) -> Result<Record> {
             let key = format!("{distances} {}", specimen.shape.label);
             let ranges: Vec<PlotPoint> =
                 methods.iter().zip(0..).map(|(runs, i)| point(f64::from(i), &values(runs))).collect();
-            let paper =
-                |method: &str| context.printed(&context.options.printed, &specimen.shape.label, method);
+            let paper = |method: &str| context.printed(&specimen.shape.label, method);
             for (method, range) in METHODS.into_iter().zip(&ranges) {
                 let PlotPoint { y, low, high, .. } = *range;
                 let numbers = [("stress", y), ("low", low), ("high", high), ("range", high / low)];

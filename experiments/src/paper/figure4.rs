@@ -18,7 +18,7 @@ use retrieval::{Labels, RankBy, evaluate, silhouette};
 use crate::collection::map;
 use crate::context::Context;
 use crate::specimen::{describing, low_rank};
-use crate::studies::forms::MANY_DIMENSIONS;
+use crate::studies::forms::in_many_dimensions;
 use crate::sweep::{MeasuredNumbers, SCORES, best_e, named, plot};
 
 const NMDS: &str = "NMDS";
@@ -61,7 +61,7 @@ pub(crate) fn figure4(context: &Context<'_>) -> Result<Record> {
             found.push((scale, name, form_alignments(&forms, normalization, context.observer)?));
         }
     }
-    for (name, method) in MANY_DIMENSIONS {
+    for (name, method) in in_many_dimensions() {
         let spectra = shapes.par_iter().zip(&sampled).map(|(shape, distances)| {
             let (form, unit) = method.sampled(distances, shape.surface.mesh())?;
             Ok(form.spectrum(unit)?)

@@ -66,7 +66,7 @@ pub(crate) fn figure9(context: &Context<'_>) -> Result<Record> {
         let mut add = |method: &'static str, measured: Result<Spent, String>| {
             context.observer.step();
             let name = method.split(',').next().unwrap_or(method);
-            let paper = context.printed(&context.options.printed, printed, name);
+            let paper = context.printed(printed, name);
             let found = measured.as_ref().ok();
             let [geodesics, algebra] = found.map_or([f64::NAN; 2], |found| found.seconds);
             let total = geodesics + algebra;

@@ -60,12 +60,10 @@ const METHODS: [(&str, FormMethod); 7] = [
     ("KPCA-Nystrom, 16 dimensions", method(Fit::KernelPca, SampledForm::DIM)),
 ];
 
-/// The methods in many dimensions, with their names in Figure 4.
-pub(crate) const MANY_DIMENSIONS: [(&str, FormMethod); 3] = [
-    ("NMDS", method(Fit::Nystrom, SampledForm::DIM)),
-    ("Sammon", method(Fit::Sammon, SampledForm::DIM)),
-    ("KPCA-Nystrom", method(Fit::KernelPca, SampledForm::DIM)),
-];
+/// The methods in 16 dimensions, by the names that they share with those in three.
+pub(crate) fn in_many_dimensions() -> impl Iterator<Item = (&'static str, FormMethod)> {
+    METHODS.into_iter().filter_map(|(name, method)| Some((name.strip_suffix(", 16 dimensions")?, method)))
+}
 
 /// The spectrum of straight distances, and that of the Laplacian of the surface of a form in three dimensions.
 const COMPARISONS: [&str; 2] = ["spectrum", "surface"];

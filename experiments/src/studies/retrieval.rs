@@ -55,8 +55,10 @@ pub(crate) fn retrieval(context: &Context<'_>) -> Result<Record> {
     let figures = vec![Figure { part: "curves".to_owned(), caption, panels: FigurePanels::Plots(plots) }];
     let n_queries = (0..n).filter(|i| labels.is_query(*i)).count();
     measured.extend([("best e".to_owned(), best_e(labels)?), ("asked".to_owned(), n_queries as f64)]);
+    let headings = ["method", "size", "ranking"].into_iter().chain(SCORES);
+    let headings = headings.chain(["mAP interval", "k-NN", "least mAP"]);
     Ok(Record {
-        tables: vec![table(rows)],
+        tables: vec![Table::new("", headings, rows)],
         figures,
         ..context.record(&[("description", &gallery.options)], measured)
     })
@@ -149,13 +151,6 @@ fn rankings(
     let mut rows = vec![row("plain", &of, &found.plain, Some(least))];
     rows.extend(found.graph.iter().map(|graph| row("graph", &format!("{of} graph"), graph, None)));
     Ok(rows)
-}
-
-/// The table of all rankings.
-fn table(rows: Vec<Vec<Cell>>) -> Table {
-    let headings = ["method", "size", "ranking"].into_iter().chain(SCORES);
-    let headings = headings.chain(["mAP interval", "k-NN", "least mAP"]);
-    Table::new("", headings, rows)
 }
 
 /// The collection without one class.

@@ -3,8 +3,7 @@
 //! Measures, with `KIND STRENGTH` for those of [`kinds`]:
 //! * `KIND STRENGTH fused nn|mAP`: scores by the vectors that an index scans; the shape itself is left out, so that another one of
 //!   its class has to be found;
-//! * of [`PARTS`] also `KIND STRENGTH discs nn|mAP`, and `... own|other`, the median part distances from the nearest other shape of
-//!   the class and from the nearest shape of another class;
+//! * of [`PARTS`] also `KIND STRENGTH discs nn|mAP`;
 //! * `KIND STRENGTH cut`: the shortcuts that are cut, relative to the number of welds or handles.
 //!
 //! Also `searched`, the number of queries; `least fused nn` and `least top1`, the lowest share of shapes whose nearest, themselves
@@ -83,8 +82,6 @@ struct DamagedShape {
     name: String,
     /// By fused vectors and, of parts, by areas of discs.
     scores: Vec<(&'static str, Scores)>,
-    /// Part distances from the nearest other shape of the class and of another class; of parts.
-    nearest: Option<[f64; 2]>,
     combined: f64,
     form: f64,
     is_top1: bool,
@@ -116,20 +113,13 @@ impl Undamaged<'_> {
         };
         let robust = |i: usize| ShapeMetric::robust(&damaged.fused, &prepared[i].fused);
         let mut scores = vec![("fused", gallery.scores(query, robust))];
-        let part = PARTS.contains(&kind).then(|| describe_part(&surface, &gallery.options, &()));
-        let nearest = part.transpose()?.map(|part| {
-            let distance = |i: usize| part.distance(&discs[i]).distance;
-            scores.push(("discs", gallery.scores(query, distance)));
-            let others = || (0..discs.len()).filter(|i| *i != query.own);
-            [true, false].map(|is_own| {
-                let wanted = others().filter(|i| gallery.is_right(query, *i) == is_own);
-                wanted.map(distance).fold(f64::INFINITY, f64::min)
-            })
-        });
+        if PARTS.contains(&kind) {
+            let part = describe_part(&surface, &gallery.options, &())?;
+            scores.push(("discs", gallery.scores(query, |i| part.distance(&discs[i]).distance)));
+        }
         Ok(DamagedShape {
             name: query.shape.name.clone(),
             scores,
-            nearest,
             combined: pair.distance().combined,
             form: pair.best().gap.rms / ShapeMetric::FORM_UNIT,
             is_top1: gallery.is_right(query, first.index),
@@ -189,10 +179,6 @@ pub(crate) fn robustness(context: &Context<'_>) -> Result<Record> {
                     UNDAMAGED => whole.push((*method, [*nn, *precision])),
                     _ => draw(&mut panels, kind, (method, strength), [*nn, *precision]),
                 }
-            }
-            for (i, whose) in ["own", "other"].into_iter().enumerate() {
-                let nearest: Vec<f64> = found.iter().filter_map(|found| Some(found.nearest?[i])).collect();
-                note(&mut measured, &format!("{stage} discs"), [(whose, median(&nearest).1)]);
             }
             if matches!(damage, Damage::Weld(..) | Damage::Contact(_)) {
                 let cut = mean(found.iter().map(|found| found.shortcuts as f64 / strength as f64));
