@@ -4,7 +4,7 @@ use canonform::Exceeded;
 use datasets::Family;
 use geodesics::{
     DistanceSolver, FastMarching, FastMarchingOptions, FirstSample, Method, ObtuseTreatment, Sampling,
-    Source, SurfacePoint, Update,
+    Source, Update,
 };
 use mesh::{TriMesh, shapes};
 use nalgebra::Point3;
@@ -106,25 +106,6 @@ fn errors_on_spheres_are_below_half_of_those_of_the_planar_update() {
         assert!(*carried < 0.5 * planar, "{carried} {planar}");
     }
     assert!(carried[3] < 1.5e-3, "{carried:?}");
-}
-
-#[test]
-fn virtual_sources_are_exact_from_points_of_edges_and_faces_in_the_plane() {
-    let sheet = shapes::sheared_grid(21, 17, 0.3, -0.3);
-    let surface = sheet.intrinsic();
-    let solver = FastMarching::new(&surface, FastMarchingOptions::default(), &());
-    for i in (0..surface.topology().n_faces()).step_by(37) {
-        let face = surface::FaceId::from(i);
-        let barycentric = [0.2, 0.5, 0.3];
-        let corners = surface.topology().faces()[i].map(|v| sheet.positions[v.index()].coords);
-        let at: nalgebra::Vector3<f64> = corners.iter().zip(barycentric).map(|(p, b)| p * b).sum();
-        let source = Source::new(&surface, SurfacePoint::Face { face, barycentric }).unwrap();
-        let mut found = vec![0.0; surface.n_vertices()];
-        solver.solve_into(&[source], f64::INFINITY, &mut found).unwrap();
-        let straight: Vec<f64> = sheet.positions.iter().map(|p| (p.coords - at).norm()).collect();
-        let error = crate::support::gap(&found, &straight);
-        assert!(error < 1e-9, "face {i}: {error:e}");
-    }
 }
 
 /// A solver that computes all distances from each sample as in Procedure 1 of the paper, or one whose pruned fronts stop

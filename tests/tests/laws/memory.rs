@@ -1,4 +1,4 @@
-//! Distances that do not fit into memory are kept in a file, and results are the same bit for bit.
+//! Distances that do not fit into memory are kept in a file, and results are the same bit for bit, on one thread too.
 
 use canonform::Budget;
 use canonform::embed::{EmbedMethod, EmbedOptions, FormOptions, Samples, StressChoice, StressOptions, embed};
@@ -25,7 +25,7 @@ fn a_form_does_not_depend_on_memory() {
         let bytes = if samples == Samples::Auto { 28_000_000 } else { 2_600_000 };
         let budget = Budget::unlimited().with_memory(bytes).with_spill(folder.path().to_owned());
         let (intrinsic, map) = surface.clone().into_parts();
-        let lean = embed((intrinsic, &map), measured, &budget).unwrap();
+        let lean = testkit::on_threads(1, || embed((intrinsic, &map), measured, &budget).unwrap());
         assert!(lean.distances.is_in_file() && !usual.distances.is_in_file());
         assert!(lean.report.stress.is_some() && facts(&lean) == facts(&usual), "{options:?}");
     }

@@ -104,17 +104,6 @@ fn paths_are_written_in_every_format() {
     place.done("geodesic sheet.off --components bridge --source 40 --path-to 4 -o p.csv");
 }
 
-#[test]
-fn all_pairs_are_the_same_for_any_memory_and_threads() {
-    let place = place();
-    place.done("geodesic sheet.off --all-pairs -o all.npy");
-    let (shape, pairs) = read_npy(&place.path("all.npy"));
-    assert_eq!(shape, [72, 72]);
-    assert!((9..72).all(|i| pairs[9 * 72 + i].is_finite() && pairs[i].is_infinite()));
-    place.done("geodesic sheet.off --all-pairs -o again.npy --memory 2K --threads 1");
-    assert!(fs::read(place.path("again.npy")).unwrap() == fs::read(place.path("all.npy")).unwrap());
-}
-
 #[cfg(unix)]
 #[test]
 fn an_interrupted_run_leaves_nothing_behind() {
