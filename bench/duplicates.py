@@ -78,17 +78,17 @@ def collection(folder, n):
 
 
 def judged(found, of):
-    """Copies that are in one group with another file of their original, and members that are another part than their keeper."""
+    """Copies that are in one group with another file of their original, and members that are another part than what they are said to copy."""
     told, false = 0, []
     for group in found["groups"]:
-        keeper, members = group["keeper"]["id"], group["members"]
-        originals = [of[id] for id in [keeper, *(member["id"] for member in members)]]
+        members = group["members"]
+        originals = [of[id] for id in [group["keeper"]["id"], *(member["id"] for member in members)]]
         told += len(originals) - len(set(originals))
         for member in members:
             # Some parts are others at another size, or their mirror images.
             is_alike = {"scaled", "mirrored"} & set(member["relation"]["changes"])
-            if of[member["id"]] != of[keeper] and not is_alike:
-                false.append((keeper, member["id"], member["relation"]["text"]))
+            if of[member["id"]] != of[member["of"]] and not is_alike:
+                false.append((member["of"], member["id"], member["relation"]["text"]))
     return told, false
 
 

@@ -34,8 +34,9 @@ def benchmark(doc, section, **options):
     with open(args.output) as file:
         page = file.read()
     begin, end = f"<!-- {name} begins -->\n", f"<!-- {name} ends -->\n"
-    before, rest = page.split(begin)
-    _, after = rest.split(end)
+    # A section that is not there yet comes last.
+    before, _, rest = page.partition(begin)
+    after = rest.partition(end)[2]
     with open(args.output + ".part", "w") as file:
         file.write(before + begin + "\n\n".join(parts) + "\n" + end + after)
     os.replace(args.output + ".part", args.output)
