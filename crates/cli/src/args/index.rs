@@ -179,7 +179,7 @@ pub(crate) struct SearchArgs {
     #[arg(long, hide = true)]
     pub(crate) exact: bool,
     /// How to order results; `part` and `forms` compare the query with every shape
-    #[arg(long, visible_alias = "by", default_value = "plain")]
+    #[arg(long, alias = "by", default_value = "plain")]
     pub(crate) rank: SearchRank,
 }
 
