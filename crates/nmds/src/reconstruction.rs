@@ -1,7 +1,6 @@
 //! How well a few columns of squared distances reconstruct all of them.
 
-use linalg::{LandmarkDistances, LinalgError, Matrix, thin_qr};
-use rayon::prelude::*;
+use linalg::{LandmarkDistances, Matrix, thin_qr};
 
 use crate::passes::product;
 use crate::regularization::largest_magnitudes;
@@ -29,11 +28,9 @@ pub struct ReconstructionError {
 ///
 /// With `A = Q' E Q` and `Ê = Q Â Q'`, the error is a sum of squares without cancellation:
 /// `‖E - Ê‖² = ‖E - QQ'E‖² + ‖Q'E - A Q'‖² + ‖A - Â‖²`. The first term is the error of the best projection, the first two
-/// that of the best symmetric `X`, and only the last depends on the regularization. So two passes over the rows of `E`
-/// suffice for any number of regularizations of the same samples.
+/// that of the best symmetric `X`, and only the last depends on the regularization.
 ///
-/// * Cost: [`Self::new`] takes `O(p^2 n)` time, in blocks of rows, and `O(p n)` memory; each error `O(n^3)` time.
-/// * Does not depend on the number of threads.
+/// * Cost: [`Self::new`] takes `O(p^2 n)` time and `O(p^2)` memory; each error `O(n^3)` time.
 /// * `rows` and `distances` may come from different solvers, for example an approximation from hop counts.
 #[derive(Debug)]
 pub struct Reconstruction {
@@ -51,11 +48,8 @@ pub struct Reconstruction {
     mixed_sq: f64,
 }
 
-/// Rows in a block; fixes the order of summation.
-const BLOCK: usize = 64;
-
 impl Reconstruction {
-    /// Takes the samples' columns and the rows of all distances. Reads each row twice.
+    /// Takes the samples' columns and the rows of all distances.
     ///
     /// # Errors
     /// [`NmdsError::PointMismatch`], [`NmdsError::NoExtent`], [`NmdsError::Exceeded`].
@@ -65,22 +59,18 @@ impl Reconstruction {
         let unit = check_extent(distances.max(), p)?;
         let columns = distances.to_matrix()?.map(|d| (d / unit).powi(2));
         let (q, _) = thin_qr(&columns);
-        // Row i of E Q, which is column i of Q' E.
-        let blocks = by_blocks(rows, unit, |_, block| (block.norm_squared(), block * &q))?;
-        let mut image = Matrix::zeros(p, q.ncols());
-        let mut norm_sq = 0.0;
-        for (i, (sum, rows)) in blocks.into_iter().enumerate() {
-            norm_sq += sum;
-            image.rows_mut(i * BLOCK, rows.nrows()).copy_from(&rows);
+        let mut squares = Matrix::zeros(p, p);
+        for (i, mut column) in squares.column_iter_mut().enumerate() {
+            rows.row_into(i, column.as_mut_slice())?;
         }
+        squares.apply(|d| *d = (*d / unit).powi(2));
+        let norm_sq = squares.norm_squared();
+        // E Q, the transpose of Q' E.
+        let image = &squares * &q;
         let projected = q.tr_mul(&image);
         let mixed_sq = (&image - &q * projected.transpose()).norm_squared();
-        let (across, image) = (&q, image.transpose());
-        let outside = by_blocks(rows, unit, |start, block| {
-            let within = across.rows(start, block.nrows()) * &image;
-            (block - within).norm_squared()
-        })?;
-        let outside_sq = outside.iter().sum();
+        squares.gemm(-1.0, &q, &image.transpose(), 1.0);
+        let outside_sq = squares.norm_squared();
         let block = distances.sq_block() / (unit * unit);
         Ok(Self { unit, columns, block, projected, norm_sq, outside_sq, mixed_sq, q })
     }
@@ -109,29 +99,6 @@ impl Reconstruction {
         let relative = if self.norm_sq > 0.0 { (sum_sq / self.norm_sq).sqrt() } else { 0.0 };
         ReconstructionError { relative, mean_square: sum_sq * self.unit.powi(4) / (p * p) }
     }
-}
-
-/// Evaluates `work(start, block)` for all blocks of rows of squared distances in units of `unit²`.
-fn by_blocks<T: Send>(
-    rows: &dyn DistanceRows,
-    unit: f64,
-    work: impl Fn(usize, Matrix) -> T + Sync,
-) -> Result<Vec<T>, LinalgError> {
-    let p = rows.n_points();
-    let starts: Vec<usize> = (0..p).step_by(BLOCK).collect();
-    let block = |start: usize| {
-        let height = BLOCK.min(p - start);
-        let mut row = vec![0.0; p];
-        let mut block = Matrix::zeros(height, p);
-        for i in 0..height {
-            rows.row_into(start + i, &mut row)?;
-            for (square, d) in block.row_mut(i).iter_mut().zip(&row) {
-                *square = (d / unit).powi(2);
-            }
-        }
-        Ok(work(start, block))
-    };
-    starts.par_iter().map(|&start| block(start)).collect()
 }
 
 /// The eigenvalues of the squared distances between samples (`S`), largest magnitude first, in the squared unit of the
