@@ -22,7 +22,7 @@ const TOLERANCE: f64 = 1e-11;
 /// [`LinalgError::NotConverged`], [`LinalgError::Exceeded`].
 ///
 /// ```
-/// use canonform_linalg::{SymmetricOperator, largest_eigenpairs};
+/// use canonform_linalg::{Matrix, SymmetricOperator, largest_eigenpairs};
 ///
 /// /// The diagonal matrix of 1, 1/2, 1/3 and so on.
 /// #[derive(Debug)]
@@ -33,8 +33,8 @@ const TOLERANCE: f64 = 1e-11;
 ///         300
 ///     }
 ///
-///     fn apply(&self, x: &[f64], y: &mut [f64]) {
-///         (1..).zip(x.iter().zip(y)).for_each(|(i, (x, y))| *y = x / f64::from(i));
+///     fn apply(&self, columns: &Matrix) -> Matrix {
+///         Matrix::from_fn(300, columns.ncols(), |i, j| columns[(i, j)] / (i + 1) as f64)
 ///     }
 /// }
 ///

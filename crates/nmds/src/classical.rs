@@ -7,7 +7,7 @@ use linalg::{
 };
 use rayon::prelude::*;
 
-use crate::squares::{check_dim, check_extent};
+use crate::squares::{center_columns, check_dim, check_extent};
 use crate::{Embedding, NmdsError};
 
 /// Classical multidimensional scaling: the coordinates `Z = U √L` from the `dim` largest eigenpairs of
@@ -88,24 +88,27 @@ impl SymmetricOperator for CenteredSquares<'_> {
         self.distances.n_points()
     }
 
-    fn apply(&self, x: &[f64], y: &mut [f64]) {
-        let p = self.order() as f64;
-        let mean = x.iter().sum::<f64>() / p;
-        let centered: Vec<f64> = x.iter().map(|v| v - mean).collect();
+    fn apply(&self, columns: &Matrix) -> Matrix {
+        let mut x = columns.clone();
+        center_columns(&mut x);
         let factor = -0.5 / (self.unit * self.unit);
-        y.par_iter_mut().enumerate().for_each(|(i, out)| {
-            // Four independent chains of additions.
-            let mut sums = [0.0; 4];
-            let (row, x) = (self.distances.row(i).chunks_exact(4), centered.chunks_exact(4));
-            let tail: f64 = row.remainder().iter().zip(x.remainder()).map(|(d, x)| d * d * x).sum();
-            for (d, x) in row.zip(x) {
-                for lane in 0..4 {
-                    sums[lane] += d[lane] * d[lane] * x[lane];
+        let mut result = Matrix::zeros(x.nrows(), x.ncols());
+        for (x, mut y) in x.column_iter().zip(result.column_iter_mut()) {
+            let x = x.as_slice();
+            y.as_mut_slice().par_iter_mut().enumerate().for_each(|(i, out)| {
+                // Four independent chains of additions.
+                let mut sums = [0.0; 4];
+                let (row, x) = (self.distances.row(i).chunks_exact(4), x.chunks_exact(4));
+                let tail: f64 = row.remainder().iter().zip(x.remainder()).map(|(d, x)| d * d * x).sum();
+                for (d, x) in row.zip(x) {
+                    for lane in 0..4 {
+                        sums[lane] += d[lane] * d[lane] * x[lane];
+                    }
                 }
-            }
-            *out = factor * (sums.iter().sum::<f64>() + tail);
-        });
-        let mean = y.iter().sum::<f64>() / p;
-        y.iter_mut().for_each(|v| *v -= mean);
+                *out = factor * (sums.iter().sum::<f64>() + tail);
+            });
+        }
+        center_columns(&mut result);
+        result
     }
 }

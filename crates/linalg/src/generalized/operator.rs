@@ -54,12 +54,7 @@ impl SymmetricOperator for ShiftInverse {
         self.masses.len()
     }
 
-    fn apply(&self, x: &[f64], y: &mut [f64]) {
-        y.iter_mut().zip(x).zip(&self.masses).for_each(|((y, x), m)| *y = x * m);
-        self.factor.solve_ordered_columns(y);
-    }
-
-    fn apply_to_columns(&self, columns: &Matrix) -> Matrix {
+    fn apply(&self, columns: &Matrix) -> Matrix {
         let mut result = weighted(self, columns);
         self.factor.solve_ordered_columns(result.as_mut_slice());
         result

@@ -84,7 +84,7 @@ impl<'a> Lanczos<'a> {
     pub(crate) fn step(&mut self) {
         let block = std::mem::replace(&mut self.next, Matrix::zeros(self.operator.order(), 0));
         self.basis.append(&block);
-        let mut image = self.operator.apply_to_columns(&block);
+        let mut image = self.operator.apply(&block);
         let lengths = self.lengths(&image);
         // First subtracts the components that exist in exact arithmetic, then those due to rounding.
         if let Some([_, coupling]) = self.blocks.last() {
@@ -107,7 +107,7 @@ impl<'a> Lanczos<'a> {
     pub(crate) fn add_random(&mut self, count: usize) {
         let n = self.operator.order();
         let random = Matrix::from_fn(n, count, |_, _| self.random.uniform());
-        let mut fresh = self.operator.apply_to_columns(&random);
+        let mut fresh = self.operator.apply(&random);
         let lengths = self.lengths(&fresh);
         self.orthonormalize(&mut fresh, &lengths);
         let old = self.next.ncols();
