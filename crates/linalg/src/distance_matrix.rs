@@ -1,5 +1,7 @@
 //! Distances between all pairs of points.
 
+use rayon::prelude::*;
+
 use crate::LinalgError;
 
 /// The n x n matrix of distances between n points, stored row by row.
@@ -44,17 +46,17 @@ impl DistanceMatrix {
         Ok(Self { n, values })
     }
 
-    /// Evaluates `distance(i, j)` for each pair `i < j`.
+    /// Evaluates `distance(i, j)` for each pair `i < j`, in parallel.
     ///
     /// # Errors
     /// [`LinalgError::BadDistance`] for the first value that is NaN, infinite or negative.
-    pub fn from_pairs(n: usize, mut distance: impl FnMut(usize, usize) -> f64) -> Result<Self, LinalgError> {
+    pub fn from_pairs(n: usize, distance: impl Fn(usize, usize) -> f64 + Sync) -> Result<Self, LinalgError> {
         let mut values = vec![0.0; n * n];
+        let one_row = |(i, row): (usize, &mut [f64])| (i + 1..n).for_each(|j| row[j] = distance(i, j));
+        values.par_chunks_mut(n.max(1)).enumerate().for_each(one_row);
         for i in 0..n {
-            for j in i + 1..n {
-                let d = distance(i, j);
-                values[i * n + j] = d;
-                values[j * n + i] = d;
+            for j in 0..i {
+                values[i * n + j] = values[j * n + i];
             }
         }
         Self::from_rows(n, values)

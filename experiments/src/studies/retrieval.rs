@@ -79,7 +79,7 @@ fn distances(
     counts_size: bool,
 ) -> Result<Vec<(String, DistanceMatrix)>> {
     let n = shapes.len();
-    let all = |distance: &dyn Fn(usize, usize) -> f64| DistanceMatrix::from_pairs(n, distance);
+    let all = |distance: &(dyn Fn(usize, usize) -> f64 + Sync)| DistanceMatrix::from_pairs(n, distance);
     let size_of = |i: usize| ShapeMetric::size_coordinate(shapes[i].entry.facts.area);
     let area = |shape: &Shape| Some(shape.entry.facts.area).filter(|_| counts_size);
     let fuse = |shape: &Shape| {

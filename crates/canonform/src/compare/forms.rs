@@ -37,17 +37,12 @@ pub fn form_alignments(
 ) -> Result<DistanceMatrix, Error> {
     let prepare = |form: &CanonicalForm| form.normalized(normalization).prepared();
     let forms: Vec<_> = forms.par_iter().map(prepare).collect::<Result<_, _>>()?;
-    let n = forms.len();
-    let pairs: Vec<(usize, usize)> = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j))).collect();
-    observer.begin("alignment", pairs.len());
-    let one = |&(i, j): &(usize, usize)| {
-        let found = align_points(&forms[i], &forms[j], Reflections::Allow);
+    observer.begin("alignment", forms.len() * forms.len().saturating_sub(1) / 2);
+    let distance = |i: usize, j: usize| {
         observer.step();
-        found.gap.rms
+        align_points(&forms[i], &forms[j], Reflections::Allow).gap.rms
     };
-    let found: Vec<f64> = pairs.par_iter().map(one).collect();
-    let mut next = found.into_iter();
-    Ok(DistanceMatrix::from_pairs(n, |_, _| next.next().unwrap_or(f64::NAN))?)
+    Ok(DistanceMatrix::from_pairs(forms.len(), distance)?)
 }
 
 /// Straight-line distances between the points of an embedding.

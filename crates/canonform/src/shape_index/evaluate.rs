@@ -6,7 +6,6 @@ use std::str::FromStr;
 use descriptors::{ShapeMetric, SignatureKind};
 use index::{Index, Shape};
 use linalg::DistanceMatrix;
-use rayon::prelude::*;
 use retrieval::{Evaluation, Labels, RankBy, evaluate};
 
 use serde::Serialize;
@@ -124,15 +123,11 @@ pub fn evaluate_index(
         return Err(file.fits_none(&id).into());
     }
     observer.begin("distances", n * n.saturating_sub(1) / 2);
-    let later = |i: usize| -> Vec<f64> {
-        let distance = |other: &Vec<f32>| {
-            observer.step();
-            ShapeMetric::fused(&rows[i], other)
-        };
-        rows[i + 1..].iter().map(distance).collect()
+    let distance = |i: usize, j: usize| {
+        observer.step();
+        ShapeMetric::fused(&rows[i], &rows[j])
     };
-    let later: Vec<Vec<f64>> = (0..n).into_par_iter().map(later).collect();
-    let distances = DistanceMatrix::from_pairs(n, |i, j| later[i][j - i - 1])?;
+    let distances = DistanceMatrix::from_pairs(n, distance)?;
     let names: Vec<&str> = shapes.iter().map(|entry| entry.label.as_str()).collect();
     let scores = evaluate(&distances, &Labels::new(&names), knn_k, rank_by)?;
     let agreement = Agreement::of(shapes, &options_of(&index)?, |id| index.shape(id), observer)?;

@@ -85,7 +85,7 @@ impl Problem {
         order: &[usize],
         samples: &[usize],
         scale: f64,
-        distance: &dyn Fn(usize, usize) -> f64,
+        distance: &(dyn Fn(usize, usize) -> f64 + Sync),
     ) -> Self {
         let p = order.len();
         let mut number = vec![0; p];
@@ -106,7 +106,7 @@ impl Problem {
     }
 
     /// Points in their own order, the first `n` as samples.
-    fn new(p: usize, n: usize, distance: &dyn Fn(usize, usize) -> f64) -> Self {
+    fn new(p: usize, n: usize, distance: &(dyn Fn(usize, usize) -> f64 + Sync)) -> Self {
         Self::ordered(&range(p), &range(n), 1.0, distance)
     }
 }

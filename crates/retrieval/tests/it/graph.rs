@@ -3,7 +3,7 @@ use linalg::DistanceMatrix;
 
 use crate::scattered;
 
-fn matrix(n: usize, distance: impl Fn(usize, usize) -> f64) -> DistanceMatrix {
+fn matrix(n: usize, distance: impl Fn(usize, usize) -> f64 + Sync) -> DistanceMatrix {
     DistanceMatrix::from_pairs(n, distance).unwrap()
 }
 
