@@ -107,7 +107,7 @@ impl Relation {
                     Merit::Smooth,
                     has_noise && mesh.is_rougher(other) || is_new && mesh.bends_more(STRAIGHT, other),
                 ),
-                (Merit::Closed, !mesh.exactness().is_closed),
+                (Merit::Closed, mesh.closed().is_none()),
                 (Merit::Detailed, has_lost && needed < FINER * needed_by_other),
                 // Triangles across a cylinder bend where those along it do not.
                 (
@@ -143,8 +143,9 @@ impl MeshGeometry {
     pub fn merit_over(&self, other: &Self) -> Option<Merit> {
         let [own, others] = [self.exactness(), other.exactness()];
         let needs_more = |a: usize, b: usize| a as f64 > (1.0 + ABOUT) * b as f64;
-        if own.is_closed != others.is_closed {
-            own.is_closed.then_some(Merit::Closed)
+        let [is_closed, is_other_closed] = [self, other].map(|mesh| mesh.closed().is_some());
+        if is_closed != is_other_closed {
+            is_closed.then_some(Merit::Closed)
         } else if needs_more(own.n_needed, others.n_needed) {
             Some(Merit::Detailed)
         } else {
@@ -190,7 +191,6 @@ impl MeshGeometry {
                 a.cross(&b).norm().atan2(a.dot(&b)) * (p - q).norm()
             });
             Exactness {
-                is_closed: self.closed().is_some(),
                 n_needed: around.iter().filter(|known| known.len() == 3).count(),
                 bending: turns.sum(),
             }

@@ -56,6 +56,8 @@ pub struct MeshGeometry {
     /// How far the file may have rounded vertices, in mesh units.
     rounding: f64,
     components: Components,
+    closed: OnceLock<Option<(f64, isize)>>,
+    rim: OnceLock<BTreeSet<VertexId>>,
     noisy: OnceLock<bool>,
     pub(super) noise: OnceLock<Option<f64>>,
     pub(super) exactness: OnceLock<Exactness>,
@@ -65,7 +67,6 @@ pub struct MeshGeometry {
 /// What tells how exactly a mesh states a surface, beside its noise.
 #[derive(Debug)]
 pub(super) struct Exactness {
-    pub(super) is_closed: bool,
     /// Vertices without which the surface would be another one.
     pub(super) n_needed: usize,
     /// Angles by which normals turn at edges, times their lengths, summed, at unit area. Other triangles of a surface hardly change
@@ -128,8 +129,8 @@ impl MeshGeometry {
 
     fn from_surface(surface: RigidSurface, rounding: f64) -> Self {
         let components = components_of_faces(surface.mesh().n_vertices(), &surface.mesh().faces);
-        let (noisy, noise, exactness, parts) = Default::default();
-        Self { content: None, surface, rounding, components, noisy, noise, exactness, parts }
+        let (closed, rim, noisy, noise, exactness, parts) = Default::default();
+        Self { content: None, surface, rounding, components, closed, rim, noisy, noise, exactness, parts }
     }
 
     /// How far vertices may be apart because files round them, relative to the size.
@@ -184,12 +185,19 @@ impl MeshGeometry {
 
     /// The enclosed volume at unit area, and the Euler characteristic; `None` unless every edge has two faces.
     pub(super) fn closed(&self) -> Option<(f64, isize)> {
-        let topology = self.mesh().topology();
-        let [n_vertices, n_edges, n_faces] =
-            [topology.n_vertices(), topology.n_edges(), topology.n_faces()].map(|n| n as isize);
-        let mut edges = (0..topology.n_edges()).map(EdgeId::from);
-        let is_closed = edges.all(|edge| topology.edge_corners(edge).len() == 2);
-        is_closed.then(|| (self.mesh().signed_volume().abs(), n_vertices - n_edges + n_faces))
+        *self.closed.get_or_init(|| {
+            let topology = self.mesh().topology();
+            let [n_vertices, n_edges, n_faces] =
+                [topology.n_vertices(), topology.n_edges(), topology.n_faces()].map(|n| n as isize);
+            let mut edges = (0..topology.n_edges()).map(EdgeId::from);
+            let is_closed = edges.all(|edge| topology.edge_corners(edge).len() == 2);
+            is_closed.then(|| (self.mesh().signed_volume().abs(), n_vertices - n_edges + n_faces))
+        })
+    }
+
+    /// The vertices on edges of one face.
+    pub(super) fn rim(&self) -> &BTreeSet<VertexId> {
+        self.rim.get_or_init(|| rim(self.mesh()))
     }
 
     /// Whether planes and cylinders with sharp edges between them make up the surface, as in parts of machines.
@@ -248,7 +256,7 @@ fn welded(mesh: &TriMesh, rounding: f64) -> TriMesh {
 }
 
 /// The vertices on edges of one face.
-pub(super) fn rim(mesh: &TriMesh) -> BTreeSet<VertexId> {
+fn rim(mesh: &TriMesh) -> BTreeSet<VertexId> {
     let topology = mesh.topology();
     topology.boundary_edges().flat_map(|edge| topology.edges()[edge.index()]).collect()
 }

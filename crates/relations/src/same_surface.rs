@@ -14,7 +14,7 @@ use super::calibration::{
     ALLOWED, ARCS, CHORDS, EXACT, FARTHEST, LOST_FACES, MAX_NOISE, NOISE, OUTSIDE, PARTS, SAME_SURFACE,
 };
 use super::exact::{Fitted, SameVertices};
-use super::geometry::{MeshGeometry, rim};
+use super::geometry::MeshGeometry;
 use super::mesh_change::systematic_displacement;
 use super::noise::noise_of_parts;
 use super::offsets::systematic_offset;
@@ -43,11 +43,10 @@ fn body_ratio(aligned: &Alignment, [a, b]: [&MeshGeometry; 2], change: Change) -
 /// How far one body is from the other, in multiples of what is allowed, on more of its surface than may be lost, such as the tip of a
 /// finger. Holes are no difference.
 fn outside([a, b]: [&MeshGeometry; 2], map: &Similarity) -> f64 {
-    let rim = rim(b.mesh());
     let mut probes = distances([a, b], map);
     let total: f64 = probes.iter().map(|probe| probe.area).sum();
     let mut may_be_lost = LOST_FACES * total / a.n_faces().min(b.n_faces()) as f64;
-    probes.retain(|probe| !b.mesh().faces[probe.nearest].iter().any(|v| rim.contains(v)));
+    probes.retain(|probe| !b.mesh().faces[probe.nearest].iter().any(|v| b.rim().contains(v)));
     probes.sort_by(|x, y| y.ratio.total_cmp(&x.ratio));
     let first_kept = probes.into_iter().find(|probe| {
         may_be_lost -= probe.area;
@@ -140,10 +139,10 @@ fn points(geometry: &MeshGeometry, errors: &[f64]) -> Vec<(Point3<f64>, f64, f64
     let area = |f: usize| mesh.area_vector(f).norm() / 14.0;
     let mut shared: BTreeMap<[VertexId; 2], (f64, f64)> = BTreeMap::new();
     for f in chosen.clone() {
-        let [a, b, c] = mesh.faces[f];
+        let ([a, b, c], area) = (mesh.faces[f], area(f));
         for [v, w] in [[a, a], [b, b], [c, c], [a, b], [b, c], [c, a]] {
             let (error, sum) = shared.entry([v.min(w), v.max(w)]).or_insert((f64::INFINITY, 0.0));
-            (*error, *sum) = (error.min(errors[f]), *sum + area(f));
+            (*error, *sum) = (error.min(errors[f]), *sum + area);
         }
     }
     let center = |f: usize| {
