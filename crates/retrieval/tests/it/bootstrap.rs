@@ -28,3 +28,11 @@ fn a_share_of_hits_has_the_interval_of_the_binomial_distribution() {
         assert!((end - expected).abs() < 0.2 * deviation, "{end} {expected}");
     }
 }
+
+#[test]
+fn scores_that_are_turned_round_have_intervals_turned_round() {
+    let nn: Vec<f64> = (0..9).map(|i| (f64::from(i) * 0.618).fract()).collect();
+    let turned: Vec<f64> = nn.iter().map(|nn| 1.0 - nn).collect();
+    let [[low, high], [other_low, other_high]] = [nn, turned].map(|nn| interval(&["a"; 9], &nn));
+    assert!((low + other_high - 1.0).abs() < 1e-12 && (high + other_low - 1.0).abs() < 1e-12);
+}

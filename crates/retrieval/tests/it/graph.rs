@@ -29,11 +29,25 @@ fn shapes_without_a_common_neighbor_keep_their_order() {
     let far: Vec<usize> = found.iter().rev().take(80).rev().map(|near| near.index).collect();
     let expected: Vec<usize> = plain.iter().rev().take(80).rev().map(|near| near.index).collect();
     assert_eq!(far, expected);
-    // They have nothing in common with the query, which counts two fifths, and the distance three.
-    let scale = plain[..LINKS].iter().map(|near| near.distance).sum::<f64>() / LINKS as f64;
-    for near in &found[119..] {
-        let x = near.distance / scale;
-        assert!((near.rank_distance - (0.6 * x / (1.0 + x) + 0.4)).abs() < 1e-12);
+    // The distance counts three fifths, and what neighborhoods do not share two.
+    let weights = |shape: usize| {
+        let links = links(&distances, shape);
+        let scale = links.iter().map(|near| near.distance).sum::<f64>() / LINKS as f64;
+        let mut weights = vec![0.0; 200];
+        weights[shape] = 1.0;
+        links.iter().for_each(|near| weights[near.index] = (-(near.distance / (0.5 * scale)).powi(2)).exp());
+        (scale, weights)
+    };
+    let (scale, own) = weights(7);
+    for (at, near) in found.iter().enumerate() {
+        let (x, (_, its)) = (near.distance / scale, weights(near.index));
+        let sum = |of: fn(f64, f64) -> f64| own.iter().zip(&its).map(|(a, b)| of(*a, *b)).sum::<f64>();
+        let apart = match plain[..LINKS].iter().any(|link| link.index == near.index) {
+            true => 1.0 - sum(f64::min) / sum(f64::max),
+            false if at >= 119 => 1.0,
+            false => continue,
+        };
+        assert!((near.rank_distance - (0.6 * x / (1.0 + x) + 0.4 * apart)).abs() < 1e-12);
     }
 }
 

@@ -30,7 +30,11 @@ fn finds_what_evaluating_all_finds_with_fewer_evaluations() {
         assert_eq!(abandoning.nearest, whole.nearest);
         assert_eq!((whole.abandoned, abandoning.evaluated), (0, whole.evaluated));
         assert!(k >= 200 || whole.evaluated < 200, "{k}: {}", whole.evaluated);
+        assert!(k != 10 || abandoning.abandoned > 0);
     }
+    // Bounds that are distances leave one batch.
+    let tight = refine_nearest::<_, ()>(all, 1, |c, _| Ok(Some((c.distance, ())))).unwrap();
+    assert_eq!(tight.evaluated, 8);
 }
 
 #[test]

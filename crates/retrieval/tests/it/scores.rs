@@ -16,28 +16,30 @@ fn of_first(positions: &[f64], names: &[&str]) -> Option<Scores> {
 
 #[test]
 fn scores_follow_their_definitions_on_a_worked_example() {
-    // From shape 0 the order is b a a b a: relevant at ranks 2, 3 and 5 of 5.
-    let positions = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0];
-    let scores = of_first(&positions, &["a", "b", "a", "a", "b", "a"]).unwrap();
+    // From shape 0 the order is b a a b b a: relevant at ranks 2, 3 and 6 of 6.
+    let positions = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
+    let scores = of_first(&positions, &["a", "b", "a", "a", "b", "b", "a"]).unwrap();
     assert_eq!(scores.nn, 0.0);
     assert!((scores.ft - 2.0 / 3.0).abs() < 1e-15);
     assert_eq!(scores.st, 1.0);
-    assert!((scores.map - (1.0 / 2.0 + 2.0 / 3.0 + 3.0 / 5.0) / 3.0).abs() < 1e-15);
-    let gain = 1.0 + 1.0 / 3f64.log2() + 1.0 / 5f64.log2();
+    assert!((scores.map - (1.0 / 2.0 + 2.0 / 3.0 + 3.0 / 6.0) / 3.0).abs() < 1e-15);
+    let gain = 1.0 + 1.0 / 3f64.log2() + 1.0 / 6f64.log2();
     let ideal = 1.0 + 1.0 + 1.0 / 3f64.log2();
     assert!((scores.dcg - gain / ideal).abs() < 1e-15);
-    // At rank 5: precision 3/5, recall 1.
-    assert!((scores.e - 0.75).abs() < 1e-15);
+    // At rank 6: precision 1/2, recall 1.
+    assert!((scores.e - 2.0 / 3.0).abs() < 1e-15);
 }
 
 #[test]
-fn e_measure_of_a_perfect_ranking_is_limited_by_the_page() {
-    // 30 shapes, one class of 15: 14 relevant among the 29 on the page.
-    let positions: Vec<f64> = (0..30).map(f64::from).collect();
-    let names: Vec<&str> = (0..30).map(|i| if i < 15 { "a" } else { "b" }).collect();
-    let scores = of_first(&positions, &names).unwrap();
-    assert_eq!(scores.ft, 1.0);
-    assert!((scores.e - 0.651).abs() < 1e-3);
+fn e_measure_looks_at_a_page() {
+    let positions: Vec<f64> = (0..40).map(f64::from).collect();
+    let e = |is_relevant: fn(usize) -> bool| {
+        let names: Vec<&str> = (0..40).map(|i| if is_relevant(i) { "a" } else { "b" }).collect();
+        of_first(&positions, &names).unwrap().e
+    };
+    // The first 36 are relevant: of 32 all are, which is a recall of 8/9. And the last one only is.
+    assert!((e(|i| i <= 36) - 16.0 / 17.0).abs() < 1e-15);
+    assert_eq!(e(|i| i % 39 == 0), 0.0);
 }
 
 #[test]

@@ -6,14 +6,19 @@ fn neighbors(distances: &[f64]) -> Vec<Neighbor> {
 
 #[test]
 fn near_neighbors_outvote_many_far_ones() {
-    let class = |i: usize| usize::from(i > 0);
-    let near = neighbors(&[0.1, 0.9, 0.95]);
-    let plain = vote(&near, class, 3, None);
-    assert_eq!((plain.class(), plain.tally[0].votes, plain.voters), (Some(1), 2, 3));
-    assert!((plain.tally[0].share - 2.0 / 3.0).abs() < 1e-15);
-    let weighted = vote(&near, class, 3, Some(1.0));
-    assert_eq!((weighted.class(), weighted.tally[0].votes), (Some(0), 1));
-    assert!(weighted.tally[0].share > 0.9 && weighted.tally[1].class == 1, "the winner comes first");
+    let class = |i: usize| [0, 1, 1, 2, 3][i];
+    let distances = [0.2, 1.8, 1.9, 2.0, 2.0];
+    let plain = vote(&neighbors(&distances), class, 5, None);
+    assert_eq!((plain.class(), plain.tally[0].votes, plain.voters), (Some(1), 2, 5));
+    assert!((plain.tally[0].share - 2.0 / 5.0).abs() < 1e-15);
+    let weighted = vote(&neighbors(&distances), class, 5, Some(2.0));
+    let order = [weighted.tally[0].class, weighted.tally[1].class];
+    assert_eq!((order, weighted.tally[0].votes), ([0, 1], 1));
+    let weights = distances.map(|d| (1.0 - d * d / 4.0).powi(2));
+    assert!((weighted.tally[0].share - weights[0] / weights.iter().sum::<f64>()).abs() < 1e-15);
+    // At the limit no vote has any weight, so that all count.
+    let tally = vote(&neighbors(&[2.0; 3]), class, 3, Some(2.0)).tally;
+    assert!(tally[0].class == 1 && (tally[0].share - 2.0 / 3.0).abs() < 1e-15);
 }
 
 #[test]
