@@ -49,6 +49,23 @@ fn impossible_options_are_rejected_with_the_limit() {
     }
 }
 
+/// Points in the plane, all pairs of whose twenty samples are used.
+#[test]
+fn eigenvalues_that_are_errors_count_only_if_other_points_confirm_them() {
+    let cloud = Cloud::new(200, 2, 7);
+    let rank = |elsewhere: f64| {
+        let columns = Matrix::from_fn(200, 20, |i, j| {
+            let share = if i < 20 { 1.0 } else { elsewhere };
+            let error = ((i.min(j) * 31 + i.max(j) * 57) as f64).sin();
+            cloud.distance(i, j) * (1.0 + 1e-10 * share * error)
+        });
+        let distances = LandmarkDistances::new((0..20).collect(), columns).unwrap();
+        nystrom(&distances, Regularization::None, 2).unwrap().rank
+    };
+    assert_eq!(rank(50.0), 4);
+    assert!(rank(1.0) > 4);
+}
+
 #[test]
 fn a_search_begins_with_the_rank_that_is_given() {
     assert_eq!([Regularization::default(), low_rank(30)].map(|by| by.first_samples(3)), [8, 30]);

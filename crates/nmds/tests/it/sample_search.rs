@@ -24,9 +24,16 @@ fn search(p: usize, power: f64, unit: f64, limit: usize, seed: u64) -> Found {
 fn a_search_ends_when_twice_the_samples_do_not_help() {
     let (_, distances, report) = search(240, 0.8, 1.0, 200, 0);
     assert_eq!(report.stop, SampleStop::Settled);
-    let (trials, half) = (report.tried, report.sufficient);
+    let trials = report.tried;
     assert_eq!(trials.last().unwrap().n_samples, distances.n_landmarks());
-    assert!(2 * half <= distances.n_landmarks(), "{half} of {}", distances.n_landmarks());
+    // The first whose stress is within 1 % of the last, and the last whose stress is not that much lower than with half of its samples.
+    let is_enough = |few: &SampleTrial, many: &SampleTrial| few.stress <= 1.01 * many.stress;
+    let sufficient = trials.iter().find(|few| is_enough(few, &trials[trials.len() - 1])).unwrap();
+    assert_eq!(report.sufficient, sufficient.n_samples);
+    for (i, trial) in trials.iter().enumerate() {
+        let half = trials[..i].iter().rfind(|half| 2 * half.n_samples <= trial.n_samples);
+        assert_eq!(half.is_some_and(|half| is_enough(half, trial)), i + 1 == trials.len());
+    }
     assert!(trials.windows(2).all(|pair| pair[0].n_samples < pair[1].n_samples));
     assert!(trials.windows(2).all(|pair| pair[1].n_samples as f64 <= 1.2 * pair[0].n_samples as f64 + 1.0));
     assert!((5..=16).contains(&report.rows), "{}", report.rows);
@@ -34,12 +41,16 @@ fn a_search_ends_when_twice_the_samples_do_not_help() {
 
 #[test]
 fn a_search_ends_for_other_reasons_too() {
-    let stop = |p, power, limit| search(p, power, 1.0, limit, 1).2.stop;
-    assert_eq!(stop(60, 0.8, 10), SampleStop::Limit);
-    assert_eq!(stop(7, 0.8, 640), SampleStop::AllPoints);
-    // Points in space are exact from the first samples.
-    let (_, _, report) = search(80, 1.0, 1.0, 640, 0);
-    assert_eq!((report.tried.len(), report.stop), (1, SampleStop::Settled));
+    // Points in space are exact from the first samples, of which there are eight.
+    for (p, power, limit, expected) in [
+        (60, 0.8, 10, (3, SampleStop::Limit)),
+        (7, 0.8, 640, (1, SampleStop::AllPoints)),
+        (8, 0.8, 640, (1, SampleStop::AllPoints)),
+        (80, 1.0, 640, (1, SampleStop::Settled)),
+    ] {
+        let report = search(p, power, 1.0, limit, 1).2;
+        assert_eq!((report.tried.len(), report.stop), expected);
+    }
 }
 
 #[test]
