@@ -391,9 +391,10 @@ mod tests {
         let [left, right] = around(entry);
         let ends = [left, right].map(|slot| triangle.corners()[slot]);
         let length = distance(ends[0], ends[1]);
-        let is_early = (0..2).any(|i| {
-            known[i] - window.distance(ends[i]) > DISAGREEMENT * length && known[i] < crossing.distance
-        });
+        let is_early = !known.contains(&f64::INFINITY)
+            && (0..2).any(|i| {
+                known[i] - window.distance(ends[i]) > DISAGREEMENT * length && known[i] < crossing.distance
+            });
         let SourceWindow { source, limits, offset } = match is_early {
             true => {
                 let offset = window.offset.min(known[0]).min(known[1]);
@@ -454,7 +455,10 @@ mod tests {
                 None
             };
             let (bend, before, is_new) = match (turns_at, limit) {
-                (Some(corner), _) => (at[corner], at_corners[corner] - offset, true),
+                (Some(corner), _) => {
+                    let known = Some(at_corners[corner] - offset).filter(|known| known.is_finite());
+                    (at[corner], known.unwrap_or(norm(at[corner])), true)
+                }
                 (None, Some(limit)) => {
                     // Dark if no corner is on the light side.
                     let sign = if left == Some(limit) { 1.0 } else { -1.0 };
@@ -479,7 +483,7 @@ mod tests {
         let mut random = SplitMix(7);
         let mut number = move |low: f64, high: f64| low + (high - low) * (0.5 + 0.5 * random.uniform());
         let mut n_new = 0;
-        for _ in 0..500 {
+        for _ in 0..2000 {
             let own = [number(0.8, 1.2), number(0.8, 1.2), number(0.45, 0.75)];
             // Vertices 0, 1 and 2, at some of which paths may bend; vertex 3 is beyond both exits.
             let vertices = [0, 1, 2].map(|i| i | if number(0.0, 1.0) < 0.4 { 1 << 31 } else { 0 });
@@ -504,7 +508,7 @@ mod tests {
             let at = |slot: usize| triangle.corners()[slot];
             // A source on the outer side of the entry, seen from its middle, and limits on either side of the apex.
             let along = sub(at(right), at(left));
-            let away = FRAC_PI_2 + number(-1.4, 1.4);
+            let away = number(-1.4, 1.4) - FRAC_PI_2;
             let far = number(0.1, 4.0);
             let direction = along[1].atan2(along[0]) + away;
             let middle = crate::plane::between(at(left), at(right), 0.5);
@@ -518,7 +522,13 @@ mod tests {
                 if number(0.0, 1.0) < 0.4 { [f64::NAN; 2] } else { [size * angle.cos(), size * angle.sin()] }
             };
             let window = SourceWindow { source, limits: [limit(1.0), limit(-1.0)], offset: number(0.0, 2.0) };
-            let known = [left, right].map(|end| window.offset + distance(at(end), source) + number(0.0, 0.3));
+            // Windows tell the ends to be nearer or farther than they are known to be, or they are not known.
+            let near = |end: usize, by: f64| window.offset + distance(at(end), source) + by;
+            let known = [left, right].map(|end| near(end, number(-0.2, 0.3)));
+            if (known[0] - known[1]).abs() > 0.95 * own[entry] {
+                continue;
+            }
+            let known = known.map(|known| if number(0.0, 1.0) < 0.1 { f64::INFINITY } else { known });
             let crossing = Crossing {
                 window,
                 triangle: &triangle,
@@ -532,7 +542,7 @@ mod tests {
             lanes.push(&crossing);
             assert_eq!(lanes.solve(), 1);
             let (apex, expected) = by_rules(&crossing);
-            assert!((lanes.apex(0).1 - apex).abs() < 1e-12);
+            assert!(lanes.apex(0).1 == apex || (lanes.apex(0).1 - apex).abs() < 1e-12);
             for (exit, expected) in expected.into_iter().enumerate() {
                 let (distance, expected) = expected.unwrap();
                 let window = lanes.window(0, exit);
@@ -543,6 +553,6 @@ mod tests {
                 n_new += usize::from(expected.offset > crossing.window.offset);
             }
         }
-        assert!((100..900).contains(&n_new), "{n_new}");
+        assert!((400..3600).contains(&n_new), "{n_new}");
     }
 }
