@@ -84,7 +84,7 @@ proptest! {
         let marching = FastMarching::new(&surface, Default::default(), &());
         let (exact, dijkstra) = (Exact::new(&surface, &()), Dijkstra::new(&surface, &()));
         let nonsense: Vec<f64> = (0..n).map(|v| ((v * 7919) % 101) as f64).collect();
-        for source in sources(&mesh) {
+        for source in sources(&mesh).take(3) {
             let Some(exact) = distances(&exact, &surface, source) else { continue };
             let solvers: [&dyn DistanceSolver; 2] = [&marching, &dijkstra];
             let [marched, along_edges] = solvers.map(|solver| solver.distances(source).unwrap());
