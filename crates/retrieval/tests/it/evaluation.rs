@@ -20,18 +20,6 @@ fn separate_clusters_score_one() {
 }
 
 #[test]
-fn scale_changes_no_score() {
-    let (matrix, labels) = two_clusters(0.5);
-    let scaled = DistanceMatrix::from_pairs(9, |i, j| 7.0 * matrix.get(i, j)).unwrap();
-    let (a, b) = (
-        evaluate(&matrix, &labels, 1, RankBy::Plain).unwrap(),
-        evaluate(&scaled, &labels, 1, RankBy::Plain).unwrap(),
-    );
-    assert!((a.silhouette - b.silhouette).abs() < 1e-12);
-    assert_eq!(Evaluation { silhouette: 0.0, ..a }, Evaluation { silhouette: 0.0, ..b });
-}
-
-#[test]
 fn shapes_in_classes_of_two_are_not_queries() {
     let matrix = line(&[0.0, 1.0, 2.0, 3.0, 4.0]);
     // Classes are sorted.
