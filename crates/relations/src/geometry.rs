@@ -6,12 +6,12 @@ use std::sync::OnceLock;
 use base::ContentHash;
 use mesh::{TriMesh, coordinate_spacing, is_noisy};
 use nalgebra::Point3;
-use rigid::{NearestPoints, RigidSurface};
+use rigid::{NearestPoints, RigidSurface, align_surfaces};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use surface::{Components, EdgeId, VertexId, components_of_faces};
 
-use super::calibration::{FEW, MAX_NOISE};
+use super::calibration::{EXACT, FARTHEST, FEW, MAX_NOISE};
 
 /// How coarsely files round coordinates, relative to the largest coordinate: text with six digits, twice. Numbers of 32 bits
 /// are finer. A tolerance of rounding.
@@ -208,6 +208,18 @@ impl MeshGeometry {
     /// Whether vertices have noise that is independent of their neighbors'.
     pub(super) fn is_noisy(&self) -> bool {
         *self.noisy.get_or_init(|| is_noisy(self.mesh()))
+    }
+
+    /// Whether it has noise that tells it from a surface without: on the planes of a part, or on all vertices.
+    pub fn has_noise(&self) -> bool {
+        self.noise().is_some_and(|noise| noise > EXACT / FARTHEST) || self.is_noisy()
+    }
+
+    /// How far two surfaces are apart in space, root mean square, relative to the size, after the best motion, reflection and change of
+    /// size; `None` if noise does not explain it.
+    pub fn noise_beside(&self, other: &Self) -> Option<f64> {
+        let gap = align_surfaces(&self.surface, &other.surface)?.gap.rms;
+        (gap < MAX_NOISE).then_some(gap)
     }
 
     /// The components with enough area as geometries of their own, largest first; none if there is only one.

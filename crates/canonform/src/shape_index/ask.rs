@@ -34,8 +34,8 @@ impl ShapeSearch {
         Ok(Query { seconds: start.elapsed().as_secs_f64(), ..query })
     }
 
-    /// A shape of the index as a query, which finds itself. Its mesh is read if it is taken as a part, or if results are
-    /// explained; then it need not be there.
+    /// A shape of the index as a query, which finds itself. Its mesh is read, but need not be there unless it is taken
+    /// as a part.
     ///
     /// # Errors
     /// [`Error::Index`] for an unknown shape; for a part [`Error::MeshGone`] and [`Error::MeshChanged`].
@@ -52,7 +52,8 @@ impl ShapeSearch {
             describe_part(&surface, describe_options, observer)
         };
         let part = (options.rank_by == SearchRank::Part).then(part).transpose()?;
-        let geometry = options.explain.then(|| self.geometry(&shape.entry)).flatten().map(Arc::new);
+        let geometry = self.geometry(&shape.entry);
+        let geometry = geometry.filter(|geometry| options.explain || geometry.has_noise()).map(Arc::new);
         let content = Some(shape.entry.content);
         let query = Query::new(shape, describe_options).named(id, content);
         Ok(Query { part, geometry, id: Some(id.to_owned()), ..query })

@@ -28,6 +28,11 @@ pub enum OrderedBy {
         /// The share of the area of the shape that the query has if it fits best.
         part_share: f64,
     },
+    /// How far its surface is from that of a query with noise, which comes before all that is not aligned.
+    Surface {
+        /// Root mean square distance in space, relative to the square root of the area.
+        surface_gap: f64,
+    },
     /// How much the forms alone differ.
     Forms {
         /// The distance by [`descriptors::SampledForm::spectrum`], in units of two poses of one body.
@@ -41,6 +46,7 @@ impl OrderedBy {
         match *self {
             Self::Graph { rank_distance, .. } => rank_distance,
             Self::Part { part_distance, .. } => part_distance,
+            Self::Surface { surface_gap } => surface_gap,
             Self::Forms { form_distance } => form_distance,
         }
     }
@@ -110,9 +116,20 @@ impl Hit {
         if are_parts { relation.without_poses() } else { relation }
     }
 
+    /// What shapes are ordered by before anything else: how far their surface is from that of the query, if it is known.
+    pub(super) fn surface_gap(&self) -> f64 {
+        match self.order {
+            Some(OrderedBy::Surface { surface_gap }) => surface_gap,
+            _ => f64::INFINITY,
+        }
+    }
+
     /// The order in which one index would have met shapes of several.
     pub(super) fn cmp(&self, other: &Self) -> Ordering {
-        let key = |x: &Self| x.order.map_or([x.distance, x.fused], |order| [order.distance(), 0.0]);
+        let key = |x: &Self| {
+            let [first, second] = x.order.map_or([x.distance, x.fused], |order| [order.distance(), 0.0]);
+            [x.surface_gap(), first, second]
+        };
         let numbers = key(self).into_iter().zip(key(other)).map(|(a, b)| a.total_cmp(&b));
         numbers.fold(Ordering::Equal, Ordering::then).then_with(|| self.id.cmp(&other.id))
     }

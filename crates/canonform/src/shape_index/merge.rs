@@ -19,6 +19,7 @@ pub fn merge_answers(query: &Query, answers: Vec<Answer>, classes: Option<Agreem
         merged.n_shapes += answer.n_shapes;
         merged.measured += answer.measured;
         merged.aligned += answer.aligned;
+        merged.unread += answer.unread;
         merged.results.extend(answer.results);
     }
     merged.results.sort_by(Hit::cmp);

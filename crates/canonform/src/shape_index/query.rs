@@ -31,7 +31,7 @@ pub struct Query {
     pub id: Option<String>,
     /// What its fit as a part is measured by. Only with it can results be ordered by that.
     pub part: Option<PartDiscAreas>,
-    /// The mesh in space, by which results are explained.
+    /// The mesh in space, by which results are explained, and ordered if it has noise.
     #[serde(serialize_with = "write_geometry", deserialize_with = "read_geometry")]
     pub geometry: Option<Arc<MeshGeometry>>,
     /// Whether it is a component of another query.
@@ -77,10 +77,14 @@ impl Query {
         if search.rank_by == SearchRank::Part {
             self.part = Some(describe_part(surface, describe, observer)?);
         }
-        if search.explain {
-            self.geometry = MeshGeometry::new(mesh, self.content).map(Arc::new);
-        }
+        let geometry = MeshGeometry::new(mesh, self.content);
+        self.geometry = geometry.filter(|geometry| search.explain || geometry.has_noise()).map(Arc::new);
         Ok(self)
+    }
+
+    /// Its mesh in space, if that has noise: then the surface tells more than descriptors.
+    pub(super) fn noisy_surface(&self) -> Option<&MeshGeometry> {
+        self.geometry.as_deref().filter(|geometry| geometry.has_noise())
     }
 }
 

@@ -27,6 +27,9 @@ use crate::compare::compare;
 use crate::error::Error;
 use crate::form::DescribeOptions;
 
+/// The nearest shapes whose surfaces are aligned with that of a query with noise. A limit of effort.
+const SURFACES: usize = 20;
+
 /// The answer to a search. Read from JSON, it is one that can be [merged](crate::search::merge_answers): without its explanations and
 /// its class.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -51,6 +54,8 @@ pub struct Answer {
     pub measured: usize,
     /// Shapes whose alignment was begun.
     pub aligned: usize,
+    /// Files that could not be read to align their surfaces with a query that has noise; their shapes are ordered by distance.
+    pub unread: usize,
     /// Expected share of the nearest shapes that are found: 1, unless the vectors of many indexes are coded.
     pub recall: f64,
     /// Wall-clock seconds.
@@ -247,6 +252,7 @@ impl ShapeSearch {
             }
             (SearchRank::Plain | SearchRank::Graph, _) => None,
         };
+        let mut unread = 0;
         let (found, aligned) = match &ordered {
             Some(ordered) => {
                 let candidates = (0..ordered.len()).map(|index| Neighbor { index, distance: 0.0 });
@@ -257,7 +263,10 @@ impl ShapeSearch {
                 let some = ids.map(|ids| self.table_of(&ids)).transpose()?;
                 let all = some.as_ref().map_or_else(|| self.index.vector_table(), Ok)?;
                 let candidates = bounds(&asked.shape.fused, all);
-                self.aligned(asked, candidates, wanted, &|i| (all.id(i), None), budget)?
+                let wanted = asked.query.noisy_surface().map_or(wanted, |_| wanted.max(SURFACES));
+                let mut nearest = self.aligned(asked, candidates, wanted, &|i| (all.id(i), None), budget)?;
+                unread = self.by_surfaces(asked.query, &mut nearest.0, budget)?;
+                nearest
             }
         };
         let (mut results, alignments): (Vec<Hit>, Vec<_>) = found.into_iter().unzip();
@@ -275,10 +284,33 @@ impl ShapeSearch {
             n_shapes,
             measured: n_shapes,
             aligned,
+            unread,
             recall: 1.0,
             seconds,
             ..Answer::default()
         })
+    }
+
+    /// Puts what fits the surface of a query with noise first, of the nearest shapes: noise moves the surface less than the descriptors.
+    /// Returns the number of files that cannot be read.
+    fn by_surfaces(
+        &self,
+        query: &Query,
+        nearest: &mut [(Hit, Alignment)],
+        budget: &Budget,
+    ) -> Result<usize, Error> {
+        let Some(surface) = query.noisy_surface() else { return Ok(0) };
+        let align = |(hit, _): &mut (Hit, Alignment)| {
+            budget.check()?;
+            let Some(other) = self.geometry(&self.index.entry(&hit.id)?) else { return Ok(1) };
+            let gap = surface.noise_beside(&other);
+            hit.order = gap.map(|surface_gap| OrderedBy::Surface { surface_gap });
+            Ok(0)
+        };
+        let unread = nearest.par_iter_mut().take(SURFACES).map(align).sum::<Result<usize, Error>>()?;
+        nearest.sort_by(|(a, _), (b, _)| a.surface_gap().total_cmp(&b.surface_gap()));
+        nearest.iter_mut().zip(1..).for_each(|((hit, _), rank)| hit.rank = rank);
+        Ok(unread)
     }
 
     /// Adds what the files and meshes of a query and a result tell. `best` is the alignment of their forms.
@@ -413,10 +445,10 @@ type OrderedShape = (String, OrderedBy);
 mod tests {
     use std::fs;
 
-    use base::ContentHash;
+    use base::{ContentHash, SplitMix};
     use index::{IndexWriter, Shape};
     use mesh::{Surface, shapes};
-    use nalgebra::Point3;
+    use nalgebra::{Point3, Vector3};
     use tempfile::TempDir;
 
     use super::*;
@@ -632,6 +664,23 @@ mod tests {
         assert!(found.reason().ends_with("the mesh was not compared"), "{}", found.reason());
         let by_name = search_by(&search, "ring0", &options);
         assert_eq!(by_name.results[0].relation.kind, RelationKind::IdenticalFile);
+    }
+
+    #[test]
+    fn the_surface_of_a_query_with_noise_comes_first_if_its_file_is_read() {
+        let (folder, search) = indexed(&DescribeOptions::default());
+        let (mut noisy, mut random) = (search.mesh("box0").unwrap(), SplitMix(5));
+        let mut shift = || 0.002 * random.uniform();
+        noisy.positions.iter_mut().for_each(|p| *p += Vector3::from_fn(|_, _| shift()));
+        let nearest = |mesh: &TriMesh| {
+            let answer = search_for(&search, mesh, &SearchOptions { k: 1, ..SearchOptions::default() });
+            let Hit { id, order, .. } = answer.results[0].clone();
+            (id, order.map(|order| order.distance() < 0.002), answer.unread)
+        };
+        assert_eq!(nearest(&noisy), ("box0".to_owned(), Some(true), 0));
+        assert_eq!(nearest(&search.mesh("box0").unwrap()), ("box0".to_owned(), None, 0));
+        fs::remove_file(folder.path().join("box0.tri")).unwrap();
+        assert_eq!(nearest(&noisy), ("box0".to_owned(), None, 1));
     }
 
     #[test]

@@ -10,7 +10,7 @@ use canonform::library::mesh_path;
 use canonform::mesh::io::without_extension;
 use canonform::relations::Relation;
 use canonform::search::{
-    Answer, ComponentResult, OrderedBy, Prediction, SearchOptions, SearchRank, ShapeSearch, Unknown,
+    Answer, ComponentResult, Hit, OrderedBy, Prediction, SearchOptions, SearchRank, ShapeSearch, Unknown,
 };
 
 use crate::args::{Common, SearchArgs};
@@ -138,6 +138,9 @@ fn meant(given: &Path, index: &ShapeSearch) -> Option<String> {
 fn text(query: String, report: &Answer, details: bool) -> String {
     let mut text = format!("{}\n{}\n", one_line(&query), table(report, details));
     text += match report.rank_by {
+        SearchRank::Plain if is_by_surfaces(report) => {
+            "  ordered by surface gap first: the query has noise, so its surface was aligned with those of the nearest shapes\n"
+        }
         SearchRank::Plain => "",
         SearchRank::Graph => {
             "  ordered by rank distance: signatures and neighbors in common; `plain` is the rank by signatures\n"
@@ -147,6 +150,10 @@ fn text(query: String, report: &Answer, details: bool) -> String {
             "  ordered by part distance: how well the query fits as a part; `share` is its share of the shape\n"
         }
     };
+    if report.unread > 0 {
+        text +=
+            &format!("  {} not read: their shapes are ordered by distance\n", count(report.unread, "file"));
+    }
     if details {
         for result in &report.results {
             let path = one_line(&result.path);
@@ -174,10 +181,15 @@ fn class(predicted: &Prediction) -> String {
     }
 }
 
+fn is_by_surfaces(report: &Answer) -> bool {
+    matches!(report.results.first(), Some(Hit { order: Some(OrderedBy::Surface { .. }), .. }))
+}
+
 fn table(report: &Answer, details: bool) -> comfy_table::Table {
     let has_classes = report.results.iter().any(|result| !result.label.is_empty());
     let class: &[&str] = if has_classes { &["class"] } else { &[] };
     let order: &[&str] = match report.rank_by {
+        SearchRank::Plain if is_by_surfaces(report) => &["surface gap"],
         SearchRank::Plain => &[],
         SearchRank::Graph => &["rank distance", "plain"],
         SearchRank::Part => &["part distance", "share"],
@@ -191,7 +203,9 @@ fn table(report: &Answer, details: bool) -> comfy_table::Table {
         let mut row = vec![result.rank.to_string(), result.id.clone()];
         row.extend(has_classes.then(|| result.label.clone()));
         match result.order {
+            None if is_by_surfaces(report) => row.push("-".to_owned()),
             None => {}
+            Some(OrderedBy::Surface { surface_gap }) => row.push(format!("{surface_gap:.4}")),
             Some(OrderedBy::Graph { rank_distance, plain_rank }) => {
                 let plain = plain_rank.map_or_else(|| "-".to_owned(), |rank| rank.to_string());
                 row.extend([format!("{rank_distance:.4}"), plain]);

@@ -94,6 +94,8 @@ class Result:
         What results are ordered by if the query is taken as a part: 0 if it fits.
     part_share
         The share of the area of the shape that the query has if it is taken as a part.
+    surface_gap
+        What the first results are ordered by if the query has noise: how far their surfaces are from its own.
     form_distance
         What results are ordered by if they are ranked by canonical forms alone.
 
@@ -112,6 +114,7 @@ class Result:
     rank_distance: float | None
     part_distance: float | None
     part_share: float | None
+    surface_gap: float | None
     form_distance: float | None
 
 

@@ -18,7 +18,8 @@ pub(super) fn of(query: &str, report: &Answer) -> String {
         let [query, id, label, path] = [query, &found.id, &found.label, &found.path].map(text_cell);
         let mut fields = vec![query, rank, id, label, path, distance, fused];
         let order = match found.order {
-            None => Vec::new(),
+            // Of a query with noise, lines say by their order what is first.
+            None | Some(OrderedBy::Surface { .. }) => Vec::new(),
             Some(OrderedBy::Part { part_distance, part_share }) => vec![part_distance, part_share],
             Some(order) => vec![order.distance()],
         };

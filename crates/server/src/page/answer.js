@@ -142,6 +142,7 @@ export class Answer {
     // What another order follows.
     if (order.rank_distance !== undefined) lines.push(`rank distance ${number(order.rank_distance)}`);
     if (order.part_distance !== undefined) lines.push(`part distance ${number(order.part_distance)}`);
+    if (order.surface_gap !== undefined) lines.push(`surface gap ${number(order.surface_gap)}`);
     if (order.form_distance !== undefined) lines.push(`form distance ${number(order.form_distance)}`);
     card.title = lines.join('\n');
   }
