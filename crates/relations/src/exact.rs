@@ -19,9 +19,6 @@ const MAX_CHECKED: usize = 500;
 /// afterwards: half and twice as much change no answer about pieces.
 pub(super) const LEVERAGE: f64 = 20.0;
 
-/// Vertices nearer to the centroid than this do not determine a motion, relative to the size. A safety limit.
-const MIN_LEVER: f64 = 0.1;
-
 /// Vertices of two meshes that coincide after a similarity.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct SameVertices {
@@ -86,15 +83,17 @@ impl<'a> VertexSearch<'a> {
         };
         // The vertices with the fewest images.
         let count = |i: usize| at_radius(p[i].coords.norm()).len();
-        let rarest = |allowed: &dyn Fn(usize) -> bool| {
-            (0..p.len()).filter(|&i| allowed(i)).min_by(|&i, &j| {
+        let rarest = |lever: &dyn Fn(usize) -> f64| {
+            // Either of two vertices may move the farthest one by half of what is allowed.
+            let least = 2.0 / LEVERAGE * (0..p.len()).map(lever).fold(0.0, f64::max);
+            (0..p.len()).filter(|&i| lever(i) > least).min_by(|&i, &j| {
                 let radius = |i: usize| p[i].coords.norm();
                 count(i).cmp(&count(j)).then(radius(j).total_cmp(&radius(i))).then(i.cmp(&j))
             })
         };
-        let first = rarest(&|i| p[i].coords.norm() > MIN_LEVER)?;
+        let first = rarest(&|i| p[i].coords.norm())?;
         let direction = p[first].coords.normalize();
-        let second = rarest(&|i| p[i].coords.cross(&direction).norm() > MIN_LEVER)?;
+        let second = rarest(&|i| p[i].coords.cross(&direction).norm())?;
         let images = [first, second].map(|i| {
             let mut found: Vec<usize> = at_radius(p[i].coords.norm()).iter().map(|&(_, j)| j).collect();
             // Most copies keep the order of vertices.
@@ -201,7 +200,8 @@ mod tests {
 
     #[test]
     fn moved_and_reordered_vertices_are_found_again() {
-        let symmetric = [shapes::icosphere(3), shapes::cube(4), shapes::tetrahedron(2)];
+        let rod = shapes::cylinder(12, 8, 0.01, 10.0);
+        let symmetric = [shapes::icosphere(3), shapes::cube(4), shapes::tetrahedron(2), rod];
         for mesh in symmetric.iter().chain([&lopsided_torus()]) {
             let same = found(mesh, &moved(mesh, 25.4, 1.0)).unwrap();
             assert!(same.same_faces && !same.map.reflected && same.gap < 1e-6, "{same:?}");
