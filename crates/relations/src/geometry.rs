@@ -210,9 +210,9 @@ impl MeshGeometry {
         *self.noisy.get_or_init(|| is_noisy(self.mesh()))
     }
 
-    /// Whether it has noise that tells it from a surface without: on the planes of a part, or on all vertices.
-    pub fn has_noise(&self) -> bool {
-        self.noise().is_some_and(|noise| noise > EXACT / FARTHEST) || self.is_noisy()
+    /// Whether its planes have noise, so that it may be a copy of a part without being one by its own edges and planes.
+    pub fn has_noisy_planes(&self) -> bool {
+        self.noise().is_some_and(|noise| noise > EXACT / FARTHEST)
     }
 
     /// How far two surfaces are apart in space, root mean square, relative to the size, after the best motion, reflection and change of

@@ -1,6 +1,5 @@
 //! Queries made of meshes and of shapes of an index.
 
-use std::sync::Arc;
 use std::time::Instant;
 
 use base::{ContentHash, Observer};
@@ -53,9 +52,8 @@ impl ShapeSearch {
         };
         let part = (options.rank_by == SearchRank::Part).then(part).transpose()?;
         let geometry = self.geometry(&shape.entry);
-        let geometry = geometry.filter(|geometry| options.explain || geometry.has_noise()).map(Arc::new);
         let content = Some(shape.entry.content);
         let query = Query::new(shape, describe_options).named(id, content);
-        Ok(Query { part, geometry, id: Some(id.to_owned()), ..query })
+        Ok(Query { part, id: Some(id.to_owned()), ..query }.with_geometry(geometry, options.explain))
     }
 }

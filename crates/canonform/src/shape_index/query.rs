@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use base::{ContentHash, Observer};
-use descriptors::PartDiscAreas;
+use descriptors::{PartDiscAreas, SignatureKind};
 use index::Shape;
 use mesh::{Surface, TriMesh};
 use relations::MeshGeometry;
@@ -78,14 +78,27 @@ impl Query {
             self.part = Some(describe_part(surface, describe, observer)?);
         }
         let geometry = MeshGeometry::new(mesh, self.content);
-        self.geometry = geometry.filter(|geometry| search.explain || geometry.has_noise()).map(Arc::new);
-        Ok(self)
+        Ok(self.with_geometry(geometry, search.explain))
     }
 
-    /// Its mesh in space, if that has noise: then the surface tells more than descriptors.
-    pub(super) fn noisy_surface(&self) -> Option<&MeshGeometry> {
-        self.geometry.as_deref().filter(|geometry| geometry.has_noise())
+    /// The query with its mesh in space, if that is needed to explain results or to order them.
+    pub(super) fn with_geometry(mut self, geometry: Option<MeshGeometry>, explain: bool) -> Self {
+        self.geometry = geometry.map(Arc::new);
+        if !explain && self.noisy_surface().is_none() {
+            self.geometry = None;
+        }
+        self
     }
+
+    /// Its mesh in space, unless it is a part without noise: a part with noise may be described as a body.
+    pub(super) fn noisy_surface(&self) -> Option<&MeshGeometry> {
+        self.geometry.as_deref().filter(|geometry| !is_mechanical(&self.shape) || geometry.has_noisy_planes())
+    }
+}
+
+/// Whether a shape is a part of planes and cylinders, by its description.
+pub(super) fn is_mechanical(shape: &Shape) -> bool {
+    shape.signatures.contains_key(SignatureKind::Rigid.name())
 }
 
 fn write_geometry<S: Serializer>(geometry: &Option<Arc<MeshGeometry>>, out: S) -> Result<S::Ok, S::Error> {

@@ -19,7 +19,7 @@ use super::agreement::Agreement;
 use super::found::{ComponentResult, Hit, OrderedBy};
 use super::options::{SearchOptions, SearchRank};
 use super::predict::{Prediction, n_results, predicted};
-use super::query::Query;
+use super::query::{Query, is_mechanical};
 use super::record::{missing, options_of};
 use super::rerank::{bounds, rerank};
 use super::source::{read_unchanged, unchanged_files};
@@ -291,8 +291,8 @@ impl ShapeSearch {
         })
     }
 
-    /// Puts what fits the surface of a query with noise first, of the nearest shapes: noise moves the surface less than the descriptors.
-    /// Returns the number of files that cannot be read.
+    /// Puts parts that fit the surface of a query with noise first, of the nearest shapes: noise moves the surface less than the
+    /// descriptors. Returns the number of files that cannot be read.
     fn by_surfaces(
         &self,
         query: &Query,
@@ -302,7 +302,11 @@ impl ShapeSearch {
         let Some(surface) = query.noisy_surface() else { return Ok(0) };
         let align = |(hit, _): &mut (Hit, Alignment)| {
             budget.check()?;
-            let Some(other) = self.geometry(&self.index.entry(&hit.id)?) else { return Ok(1) };
+            let shape = self.index.shape(&hit.id)?;
+            if !is_mechanical(&shape) {
+                return Ok(0);
+            }
+            let Some(other) = self.geometry(&shape.entry) else { return Ok(1) };
             let gap = surface.noise_beside(&other);
             hit.order = gap.map(|surface_gap| OrderedBy::Surface { surface_gap });
             Ok(0)
