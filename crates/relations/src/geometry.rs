@@ -212,7 +212,7 @@ impl MeshGeometry {
 
     /// Whether its planes have noise, so that it may be a copy of a part without being one by its own edges and planes.
     pub fn has_noisy_planes(&self) -> bool {
-        self.noise().is_some_and(|noise| noise > EXACT / FARTHEST)
+        self.noise().is_some_and(|noise| noise >= EXACT / FARTHEST)
     }
 
     /// How far two surfaces are apart in space, root mean square, relative to the size, after the best motion, reflection and change of

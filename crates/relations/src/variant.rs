@@ -4,7 +4,7 @@ use mesh::{RegionShape, SmoothRegion, SmoothRegions};
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::calibration::{EXACT, FARTHEST};
+use super::calibration::EXACT;
 use super::geometry::MeshGeometry;
 use super::numbers::in_four_digits;
 
@@ -158,9 +158,7 @@ fn extents(part: &MeshGeometry, directions: &[Vector3<f64>]) -> [f64; 3] {
 /// they can be laid over each other at one size.
 pub(super) fn differences([a, b]: [&MeshGeometry; 2], rms: Option<f64>) -> Option<Vec<Difference>> {
     // Noise breaks planes and cylinders up, so that holes and steps of a noisy part are not those that it has.
-    let is_exact = |part: &MeshGeometry| {
-        part.is_mechanical() && part.noise().is_none_or(|noise| noise < EXACT / FARTHEST)
-    };
+    let is_exact = |part: &MeshGeometry| part.is_mechanical() && !part.has_noisy_planes();
     if !(is_exact(a) && is_exact(b)) {
         return None;
     }

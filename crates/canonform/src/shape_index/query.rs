@@ -92,13 +92,9 @@ impl Query {
 
     /// Its mesh in space, unless it is a part without noise: a part with noise may be described as a body.
     pub(super) fn noisy_surface(&self) -> Option<&MeshGeometry> {
-        self.geometry.as_deref().filter(|geometry| !is_mechanical(&self.shape) || geometry.has_noisy_planes())
+        let is_mechanical = self.shape.signatures.contains_key(SignatureKind::Rigid.name());
+        self.geometry.as_deref().filter(|geometry| !is_mechanical || geometry.has_noisy_planes())
     }
-}
-
-/// Whether a shape is a part of planes and cylinders, by its description.
-pub(super) fn is_mechanical(shape: &Shape) -> bool {
-    shape.signatures.contains_key(SignatureKind::Rigid.name())
 }
 
 fn write_geometry<S: Serializer>(geometry: &Option<Arc<MeshGeometry>>, out: S) -> Result<S::Ok, S::Error> {

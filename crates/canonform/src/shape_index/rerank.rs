@@ -18,8 +18,8 @@ pub struct Aligned {
     pub shape_distance: ShapeDistance,
     /// Size of the shape over that of the query.
     pub scale: f64,
-    /// Whether both are parts of machines, which do not bend.
-    pub are_parts: bool,
+    /// Whether the shape is a part of machines, which does not bend.
+    pub is_mechanical: bool,
     /// How the form of the query, at unit area, aligns with that of the shape.
     pub alignment: Alignment,
 }
@@ -57,9 +57,9 @@ pub fn rerank<S: Borrow<PreparedShape>>(
         }
         let pair = ShapePair::new([query, shape]).with_best(alignment);
         let fused = ShapeMetric::fused(&query.fused, &shape.fused);
-        let are_parts = !(query.rigid.is_empty() || shape.rigid.is_empty());
+        let is_mechanical = !shape.rigid.is_empty();
         let (shape_distance, scale) = (pair.distance(), pair.scale());
-        let aligned = Aligned { fused, shape_distance, scale, are_parts, alignment };
+        let aligned = Aligned { fused, shape_distance, scale, is_mechanical, alignment };
         Ok(Some((ShapeMetric::combined(robust, alignment.gap.rms), aligned)))
     })
 }

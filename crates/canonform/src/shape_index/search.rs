@@ -12,16 +12,15 @@ use mesh::TriMesh;
 use mesh_io::FileSource;
 use rayon::prelude::*;
 use retrieval::{LINKS, Neighbor, graph_rank};
-use rigid::Alignment;
 use serde::{Deserialize, Serialize};
 
 use super::agreement::Agreement;
 use super::found::{ComponentResult, Hit, OrderedBy};
 use super::options::{SearchOptions, SearchRank};
 use super::predict::{Prediction, n_results, predicted};
-use super::query::{Query, is_mechanical};
+use super::query::Query;
 use super::record::{missing, options_of};
-use super::rerank::{bounds, rerank};
+use super::rerank::{Aligned, bounds, rerank};
 use super::source::{read_unchanged, unchanged_files};
 use crate::compare::compare;
 use crate::error::Error;
@@ -274,7 +273,7 @@ impl ShapeSearch {
         results.truncate(options.k);
         if options.explain {
             let found = results.par_iter_mut().zip(alignments);
-            found.try_for_each(|(hit, best)| self.explain(asked, hit, best, budget))?;
+            found.try_for_each(|(hit, aligned)| self.explain(asked, hit, &aligned, budget))?;
         }
         let seconds = SearchSeconds { describe: asked.query.seconds, search: start.elapsed().as_secs_f64() };
         Ok(Answer {
@@ -296,17 +295,16 @@ impl ShapeSearch {
     fn by_surfaces(
         &self,
         query: &Query,
-        nearest: &mut [(Hit, Alignment)],
+        nearest: &mut [(Hit, Aligned)],
         budget: &Budget,
     ) -> Result<usize, Error> {
         let Some(surface) = query.noisy_surface() else { return Ok(0) };
-        let align = |(hit, _): &mut (Hit, Alignment)| {
+        let align = |(hit, aligned): &mut (Hit, Aligned)| {
             budget.check()?;
-            let shape = self.index.shape(&hit.id)?;
-            if !is_mechanical(&shape) {
+            if !aligned.is_mechanical {
                 return Ok(0);
             }
-            let Some(other) = self.geometry(&shape.entry) else { return Ok(1) };
+            let Some(other) = self.geometry(&self.index.entry(&hit.id)?) else { return Ok(1) };
             let gap = surface.noise_beside(&other);
             hit.order = gap.map(|surface_gap| OrderedBy::Surface { surface_gap });
             Ok(0)
@@ -317,17 +315,17 @@ impl ShapeSearch {
         Ok(unread)
     }
 
-    /// Adds what the files and meshes of a query and a result tell. `best` is the alignment of their forms.
+    /// Adds what the files and meshes of a query and a result tell. `aligned` has the alignment of their forms.
     fn explain(
         &self,
         asked: &Asked<'_>,
         hit: &mut Hit,
-        best: Alignment,
+        aligned: &Aligned,
         budget: &Budget,
     ) -> Result<(), Error> {
         budget.check()?;
         let other = self.prepared(&hit.id)?;
-        hit.comparison = Some(compare(&ShapePair::new([&asked.shape, &other]).with_best(best))?);
+        hit.comparison = Some(compare(&ShapePair::new([&asked.shape, &other]).with_best(aligned.alignment))?);
         hit.relation = self.related(asked.query, &self.index.entry(&hit.id)?, hit.relation.clone())?;
         Ok(())
     }
@@ -418,7 +416,7 @@ impl ShapeSearch {
         wanted: usize,
         at: &(dyn Fn(usize) -> (&'a str, Option<OrderedBy>) + Sync),
         budget: &Budget,
-    ) -> Result<(Vec<(Hit, Alignment)>, usize), Error> {
+    ) -> Result<(Vec<(Hit, Aligned)>, usize), Error> {
         let mut refined = rerank(&asked.shape, candidates, wanted, |i| {
             budget.check()?;
             self.prepared(at(i).0)
@@ -430,13 +428,13 @@ impl ShapeSearch {
                 let Entry { id, label, path, .. } = self.index.entry(id)?;
                 let numbers = (found.shape_distance, found.scale);
                 // Only what has the same description may be called the same part without its mesh.
-                let are_parts = found.are_parts && found.fused > 0.0;
+                let are_parts = found.is_mechanical && !asked.shape.rigid.is_empty() && found.fused > 0.0;
                 let relation = Hit::by_descriptions(numbers, are_parts, order, asked.classes);
                 let relation = relation.named(&asked.query.name, &id);
                 let (fused, itself) = (found.fused, asked.itself.as_ref() == Some(&id));
                 let hit =
                     Hit { rank, id, label, itself, path, distance, fused, order, relation, comparison: None };
-                Ok((hit, found.alignment))
+                Ok((hit, found))
             });
         Ok((found.collect::<Result<_, Error>>()?, refined.evaluated))
     }
