@@ -104,6 +104,15 @@ pub fn moved(mesh: &TriMesh, motion: impl FnMut(&Point3<f64>) -> Point3<f64>) ->
     TriMesh { positions: mesh.positions.iter().map(motion).collect(), faces: mesh.faces.clone() }
 }
 
+/// The same faces, each with vertices of its own.
+pub fn soup(mesh: &TriMesh) -> TriMesh {
+    let faces = (0..mesh.n_faces()).map(|f| [3 * f, 3 * f + 1, 3 * f + 2].map(Into::into));
+    TriMesh {
+        faces: faces.collect(),
+        positions: (0..mesh.n_faces()).flat_map(|f| mesh.triangle(f)).collect(),
+    }
+}
+
 /// The mesh with its vertices and faces in reverse order.
 pub fn renumbered(mesh: &TriMesh) -> TriMesh {
     let last = mesh.n_vertices() - 1;

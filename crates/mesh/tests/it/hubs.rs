@@ -63,8 +63,7 @@ fn needles_that_meet_in_one_vertex() {
     let star = mesh(points, (0..MANY).map(|i| [0, 2 * i + 1, 2 * i + 2]));
     assert_eq!(prepare(&star, &RepairOptions::default()).non_manifold_vertices, 1);
     // The same needles, each with a tip of its own, welded and linked.
-    let corners = (0..star.n_faces()).flat_map(|f| star.triangle(f)).collect();
-    let apart = mesh(corners, (0..MANY).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]));
+    let apart = testkit::soup(&star);
     assert_eq!(prepare(&apart, &RepairOptions::default()).non_manifold_vertices, 1);
     let bridge = ComponentPolicy::Bridge;
     for weld in [Weld::None, Weld::Within(0.5), Weld::Seams] {

@@ -14,11 +14,7 @@ fn broken() -> TriMesh {
     for face in mesh.faces.iter_mut().skip(2).step_by(2) {
         face.swap(1, 2);
     }
-    let twin = VertexId::from(mesh.n_vertices());
-    mesh.positions.push(mesh.positions[10]);
-    let faces = mesh.faces.iter_mut().filter(|f| f.contains(&VertexId(10)));
-    faces.take(2).flatten().filter(|v| **v == VertexId(10)).for_each(|v| *v = twin);
-    mesh
+    testkit::cracked(&mesh, 10)
 }
 
 #[test]

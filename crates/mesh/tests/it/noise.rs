@@ -67,8 +67,7 @@ fn the_unit_of_length_does_not_matter() {
     let smooth = denoise(&rough, &rough.topology()).unwrap();
     for exponent in [-400, 400] {
         let factor = 2_f64.powi(exponent);
-        let scaled =
-            TriMesh { positions: rough.positions.iter().map(|p| p * factor).collect(), ..rough.clone() };
+        let scaled = testkit::moved(&rough, |p| p * factor);
         let found = denoise(&scaled, &scaled.topology()).unwrap();
         assert!(found.positions.iter().zip(&smooth.positions).all(|(a, b)| *a == b * factor));
     }

@@ -6,7 +6,7 @@ use canonform_mesh::{
 use nalgebra::{Point3, Rotation3, Vector3};
 use proptest::prelude::*;
 use surface::{VertexId, components_with_links};
-use testkit::{mesh, moved, renumbered};
+use testkit::{mesh, moved, renumbered, soup};
 
 fn mend(mesh: &TriMesh) -> Repaired {
     repair(mesh, &RepairOptions::default(), &()).unwrap()
@@ -18,13 +18,6 @@ fn with(components: ComponentPolicy, weld: Weld, orient: Orient) -> RepairOption
 
 fn shifted(mesh: TriMesh, by: [f64; 3]) -> TriMesh {
     moved(&mesh, |p| p + Vector3::from(by))
-}
-
-/// The same faces, each with vertices of its own.
-fn soup(mesh: &TriMesh) -> TriMesh {
-    let positions: Vec<_> = (0..mesh.n_faces()).flat_map(|f| mesh.triangle(f)).collect();
-    let faces = (0..mesh.n_faces()).map(|f| [3 * f, 3 * f + 1, 3 * f + 2].map(VertexId::from));
-    TriMesh { faces: faces.collect(), positions }
 }
 
 #[test]

@@ -80,13 +80,11 @@ fn a_sphere_looks_the_same_from_all_sides_and_is_lit_from_the_upper_left() {
 fn principal_axes_undo_a_motion() {
     let still = pear();
     let motion = Rotation3::from_euler_angles(0.4, 1.1, -2.0);
-    let mut moved = still.clone();
-    moved.positions.iter_mut().for_each(|p| *p = motion * (*p * 3.5) + Vector3::new(5.0, -7.0, 11.0));
+    let moved = testkit::moved(&still, |p| motion * (*p * 3.5) + Vector3::new(5.0, -7.0, 11.0));
     let expected = drawn(&still, &small(View::Principal));
     assert!(difference(&expected, &drawn(&moved, &small(View::Principal))) < 0.05);
     // A mirror image is seen from its other side: other shading, same outline.
-    let mut mirrored = still.clone();
-    mirrored.positions.iter_mut().for_each(|p| p.y = -p.y);
+    let mirrored = testkit::moved(&still, |p| Point3::new(p.x, -p.y, p.z));
     let mirrored = drawn(&mirrored, &small(View::Principal));
     assert!((covered(&expected) - covered(&mirrored)).abs() < 1.0);
 }
@@ -226,10 +224,7 @@ fn every_sample_shows_the_nearest_face_that_covers_it() {
         [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 0], [0, 255, 255], [255, 0, 255]];
     for mesh in [needles(150), sphere(20)] {
         // Faces that share no vertex, so that each has a color of its own, under any light.
-        let soup = TriMesh {
-            positions: (0..mesh.n_faces()).flat_map(|f| mesh.triangle(f)).collect(),
-            faces: (0..mesh.n_faces()).map(|f| [0, 1, 2].map(|i| (3 * f + i).into())).collect(),
-        };
+        let soup = testkit::soup(&mesh);
         let view = View::default().fixed(&soup, false);
         let View::Fixed(axes) = view else { panic!("{view:?}") };
         let coloring = Coloring::Colors((0..soup.n_vertices()).map(|v| HUES[v / 3 % 6]).collect());
