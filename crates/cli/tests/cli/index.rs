@@ -65,9 +65,12 @@ fn shapes_are_added_and_removed() {
     }
     assert_eq!(place.json("index info all.canonform")["classes"]["new"], 2);
     place.add("more/ring7.off", &body(2, 0));
-    place.refused("index add all.canonform more", &["`ring7`", "more/ring7.off", "--replace"]);
+    let refused = place.run("index add all.canonform more").err;
+    assert!(
+        ["`ring7`", "more/ring7.off", "--replace"].iter().all(|words| refused.contains(words)),
+        "{refused}"
+    );
     place.done("index add all.canonform more --replace");
-    place.refused("index remove all.canonform ring7 cat5", &["`cat5`", "all.canonform"]);
     let removed = place.json("index remove all.canonform ring7 extra ring7");
     assert_eq!((&removed["removed"], &removed["n_shapes"]), (&2.into(), &9.into()));
     assert_eq!(export(), whole);

@@ -22,7 +22,7 @@ fn place() -> Workplace {
     // One shape has changed since.
     place.add("meshes/ring0.off", &body(0, 3));
     place.done("index build meshes -n 20 -o new");
-    place.done("index build meshes -n 21 -o other");
+    place.done("index build meshes -n 21 --labels none -o other");
     // Vertices 160 to 169 and face 328 are dropped.
     let mut broken = broken_ring();
     broken.faces.push([3, 3, 4].map(VertexId));

@@ -29,7 +29,9 @@ fn a_server_keeps_its_address_and_ends_with_success_when_interrupted() {
     let address = line.strip_prefix("listening on http://").unwrap_or_else(|| panic!("{line}"));
     let address = address.strip_suffix(" (1 shape in i)\n").unwrap();
     let again = ["serve", "i", "--listen", address];
-    place.refused(&again[..], &[address, "another program uses it", "--listen with another port"]);
+    let refused = place.run(&again[..]);
+    let words = [address, "another program uses it", "--listen with another port"];
+    assert!(refused.code == 2 && words.iter().all(|words| refused.err.contains(words)), "{}", refused.err);
     let interrupted = Command::new("kill").args(["-INT", &serving.0.id().to_string()]).status();
     assert!(interrupted.unwrap().success());
     assert_eq!(serving.0.wait().unwrap().code(), Some(0));

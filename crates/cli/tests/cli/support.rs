@@ -100,17 +100,6 @@ impl Workplace {
         assert_eq!((answers["queries"].as_array().unwrap().len(), &answers["failed"]), (1, &json!([])));
         answers["queries"][0].take()
     }
-
-    /// Runs the program, which must fail with code 2 and a message that contains all of `words`.
-    pub(crate) fn refused(&self, arguments: impl Arguments, words: &[&str]) {
-        let arguments = arguments.words();
-        let outcome = self.run(&arguments[..]);
-        assert_eq!(outcome.code, 2, "{arguments:?}: {}{}", outcome.out, outcome.err);
-        assert!(outcome.out.is_empty(), "{arguments:?} printed {}", outcome.out);
-        for word in words {
-            assert!(outcome.err.contains(word), "{arguments:?}: no `{word}` in: {}", outcome.err);
-        }
-    }
 }
 
 pub(crate) fn program() -> &'static str {
