@@ -152,14 +152,13 @@ fn sides([a, b, c]: [usize; 3], positions: &[Point3<f64>]) -> Point3<f64> {
 
 #[cfg(test)]
 mod tests {
-    use descriptors::ShapeDistance;
     use mesh::TriMesh;
     use mesh::shapes::{cube, disjoint, icosphere, lopsided_torus, subdivide};
     use nalgebra::{Rotation3, Vector3};
-    use rigid::Handedness;
 
     use super::*;
-    use crate::{Relation, RelationKind};
+    use crate::RelationKind;
+    use crate::tests::related;
 
     thread_local! {
         pub(super) static SEARCHES: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
@@ -173,12 +172,10 @@ mod tests {
         let mut beside = ring.clone();
         beside.positions.iter_mut().for_each(|p| p.x += 9.0);
         let plate = disjoint(&[beside, ball.clone()]);
-        let related = |a: &TriMesh, b: &TriMesh| {
-            let near = ShapeDistance { fused: 0.5, combined: 0.5 };
+        let searched = |a: &TriMesh, b: &TriMesh| {
             let [a, b] = [a, b].map(|mesh| MeshGeometry::new(mesh, None).unwrap());
             SEARCHES.set(0);
-            let found = Relation::by_distance(near, 1.0, Handedness::Unknown).by_meshes([&a, &b]);
-            (found.kind, SEARCHES.get())
+            (related(&a, &b).kind, SEARCHES.get())
         };
         for (other, kind) in [
             (&ring, RelationKind::IdenticalGeometry),
@@ -186,9 +183,9 @@ mod tests {
             (&subdivide(&inches), RelationKind::Remeshed),
             (&plate, RelationKind::PartOf),
         ] {
-            assert_eq!(related(&ring, other), (kind, 0));
+            assert_eq!(searched(&ring, other), (kind, 0));
         }
-        assert_eq!(related(&ball, &subdivide(&cube(3))).1, 2);
+        assert_eq!(searched(&ball, &subdivide(&cube(3))).1, 2);
     }
 
     #[test]

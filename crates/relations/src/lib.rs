@@ -165,13 +165,18 @@ impl Relation {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use nalgebra::Vector3;
 
     use super::*;
 
     fn at(combined: f64, scale: f64, handedness: Handedness) -> Relation {
         Relation::by_distance(ShapeDistance { fused: combined, combined }, scale, handedness).named("a", "b")
+    }
+
+    /// The relation of two meshes at the distance of one shape. In space it does not depend on the distance.
+    pub(crate) fn related(a: &MeshGeometry, b: &MeshGeometry) -> Relation {
+        at(0.1, 1.0, Handedness::Unknown).by_meshes([a, b])
     }
 
     #[test]
@@ -223,7 +228,7 @@ mod tests {
                     other.positions.iter_mut().for_each(|p| p.coords.apply(|x| *x = rounded(*x)));
                 }
                 let [a, b] = [&ring, &other].map(|mesh| MeshGeometry::new(mesh, None).unwrap());
-                let found = at(0.1, factor, Handedness::Unknown).by_meshes([&a, &b]);
+                let found = related(&a, &b);
                 assert_eq!(found.kind, kind, "{factor}, {is_rounded}: {found}");
             }
         }
@@ -235,7 +240,7 @@ mod tests {
             testkit::moved(&mesh::shapes::torus(24, 12, 200.0, 70.0), |p| p + Vector3::new(4e5, 4.1e6, 0.0));
         let single = testkit::moved(&ring, |p| p.map(|x| f64::from(x as f32)));
         let [a, b] = [&ring, &single].map(|mesh| MeshGeometry::new(mesh, None).unwrap());
-        let found = at(0.1, 1.0, Handedness::Unknown).by_meshes([&a, &b]);
+        let found = related(&a, &b);
         assert_eq!(found.kind, RelationKind::IdenticalGeometry, "{found}");
     }
 

@@ -55,17 +55,11 @@ impl Relation {
 
 #[cfg(test)]
 mod tests {
-    use descriptors::ShapeDistance;
     use nalgebra::{Rotation3, Vector3};
-    use rigid::Handedness;
 
     use super::*;
+    use crate::tests::related;
     use mesh::shapes::lopsided_torus;
-
-    fn related(a: &MeshGeometry, b: &MeshGeometry) -> Relation {
-        let near = ShapeDistance { fused: 0.1, combined: 0.1 };
-        Relation::by_distance(near, 1.0, Handedness::Unknown).by_meshes([a, b])
-    }
 
     #[test]
     fn copies_coincide_at_the_size_of_the_first() {
