@@ -82,25 +82,6 @@ mod tests {
     }
 
     #[test]
-    fn bounds_are_the_robust_distances_of_all_in_order() {
-        let random = |i: usize| ((i * 7919) % 1000) as f32 / 1000.0 - 0.5;
-        let vector = |n: usize| -> Vec<f32> {
-            // Some are equal, and in others values differ by far more than their limits.
-            let (n, far) = (n % 500, if n.is_multiple_of(7) { 50.0 } else { 0.1 });
-            (0..=ShapeMetric::FUSED_LENGTH).map(|i| far * random(n * 331 + i * 17)).collect()
-        };
-        let mut all = VectorTable::default();
-        (0..700).for_each(|n| all.push("", &vector(n)));
-        for query in [vector(3), vector(7), vec![0.0; ShapeMetric::FUSED_LENGTH + 1]] {
-            let robust = |i| ShapeMetric::robust(&query, all.vector(i));
-            let mut expected: Vec<_> =
-                (0..700).map(|index| Neighbor { index, distance: robust(index) }).collect();
-            expected.sort_by(Neighbor::by_distance);
-            assert!(bounds(&query, &all).eq(expected));
-        }
-    }
-
-    #[test]
     fn reranking_finds_what_aligning_all_finds() {
         let turns = |i: usize| 1.0 + 0.2 * i as f64;
         for query in [0, 13] {

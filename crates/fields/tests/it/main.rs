@@ -283,17 +283,6 @@ fn a_forged_file_is_refused_or_answers_without_a_panic() {
 }
 
 #[test]
-fn files_that_are_no_fields_are_errors_that_name_them() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("x.field");
-    assert!(matches!(DistanceField::open(&path), Err(FieldError::File(_))));
-    std::fs::write(&path, "solid cat").unwrap();
-    let other = DistanceField::open(&path).unwrap_err();
-    assert!(matches!(other, FieldError::BadField { fault: FieldFault::NotAField, .. }));
-    assert!(other.to_string().contains("x.field"));
-}
-
-#[test]
 fn impossible_options_are_refused() {
     let surface = surface(&shapes::icosphere(1));
     let fault = |options| DistanceField::build(&surface, &options, &()).unwrap_err();
