@@ -30,6 +30,8 @@ struct Node {
 struct Placed {
     corners: [Point3<f64>; 3],
     normal: Vector3<f64>,
+    /// Unit normals of the sides in the plane, from each corner to the next.
+    outwards: [Vector3<f64>; 3],
     face: u32,
 }
 
@@ -51,7 +53,9 @@ impl TriangleTree {
     pub fn new(mesh: &TriMesh) -> Self {
         let placed = |f: usize| {
             let corners = mesh.triangle(f);
-            Some(Placed { corners, normal: mesh.area_vector(f).try_normalize(0.0)?, face: f as u32 })
+            let normal = mesh.area_vector(f).try_normalize(0.0)?;
+            let outwards = [0, 1, 2].map(|i| (corners[(i + 1) % 3] - corners[i]).cross(&normal).normalize());
+            Some(Placed { corners, normal, outwards, face: f as u32 })
         };
         let triangles: Vec<_> = (0..mesh.n_faces()).filter_map(placed).collect();
         let mut tree = Self { nodes: Vec::with_capacity(triangles.len() / 2 + 1), triangles };
@@ -118,10 +122,13 @@ impl TriangleTree {
             return;
         }
         for triangle in triangles.clone() {
-            let Placed { corners, normal, .. } = &self.triangles[triangle];
-            // A triangle is no nearer than its plane.
+            let Placed { corners, normal, outwards, .. } = &self.triangles[triangle];
+            // A triangle is no nearer than its plane, and in this no nearer than the lines along its sides.
             let height = normal.dot(&(query - corners[0]));
-            if height * height > best.sq_distance * (1.0 + ROUNDING) {
+            let beyond = |i: usize| outwards[i].dot(&(query - corners[i]));
+            let larger = |x: f64, y: f64| if x > y { x } else { y };
+            let aside = larger(larger(beyond(0), beyond(1)), larger(beyond(2), 0.0));
+            if height * height + aside * aside > best.sq_distance * (1.0 + ROUNDING) {
                 continue;
             }
             let sides = corners.each_ref().map(|corner| corner.coords.as_slice());
