@@ -2,7 +2,7 @@
 
 use rigid::{MAX_DEVIATION, axis_deviation, rms_radius};
 
-use super::calibration::{ARCS, EXACT, FARTHEST, MAX_NOISE};
+use super::calibration::{ARCS, EXACT, FARTHEST, MAX_NOISE, PARTS};
 use super::geometry::MeshGeometry;
 use super::same_surface::{allowed_in_bodies, rms_chord_error};
 
@@ -28,6 +28,8 @@ pub struct SurfaceInvariants {
     pub n_needed: usize,
     /// Root mean square distance from the centroid along the principal axes, descending, at unit area.
     pub spreads: [f64; 3],
+    /// The distance of the farthest vertex from the centroid, at unit area.
+    pub reach: f64,
     /// The enclosed volume at unit area, and the Euler characteristic; `None` for surfaces that are not closed.
     pub closed: Option<(f64, isize)>,
     /// Root mean square of the error of flat triangles, at unit area.
@@ -48,8 +50,9 @@ impl SurfaceInvariants {
         }
         let noise = self.noise + other.noise;
         let is_exact = noise < EXACT / FARTHEST;
+        let by_radius = rms_radius(self.spreads) / rms_radius(other.spreads);
         // Noise enlarges the area, so the unit of a noisy surface is another one.
-        let unit = if is_exact { 1.0 } else { rms_radius(self.spreads) / rms_radius(other.spreads) };
+        let unit = if is_exact { 1.0 } else { by_radius };
         let apart = self.spreads.iter().zip(&other.spreads).map(|(x, y)| (x - unit * y).abs());
         let spread = apart.fold(0.0, f64::max);
         // Divided triangles leave arcs as they are; with noise, every vertex is needed.
@@ -63,7 +66,9 @@ impl SurfaceInvariants {
             }
             _ => true,
         };
-        spread < most && is_same_solid
+        // Arcs change the area, and the length of a thin part at unit area with it.
+        let reach = (self.reach - by_radius * other.reach).abs();
+        reach < most + (PARTS * FARTHEST - 1.0) * noise && spread < most && is_same_solid
     }
 
     /// How much the spreads of copies of a body may differ, as a share of the rms radius.
@@ -90,6 +95,7 @@ impl MeshGeometry {
             n_vertices: self.n_vertices(),
             n_needed: if is_mechanical { self.exactness().n_needed } else { self.n_vertices() },
             spreads: self.surface.axis_std,
+            reach: self.mesh().positions.iter().map(|p| p.coords.norm()).fold(0.0, f64::max),
             closed: self.closed(),
             chords: rms_chord_error(self),
             is_mechanical,
