@@ -5,7 +5,7 @@ OUT ?= out
 # For `make reproduce`: a folder of meshes with the classes of the paper. Default: the built-in dataset.
 DATASET ?=
 
-.PHONY: help setup build run test test-all test-python wheels reference notebooks lint-packaging lint bench bench-peers bench-nmds bench-preparation bench-search bench-capacity bench-duplicates bench-maps bench-packages fmt doc guide reproduce report paper measure plotly deny mutants sbom fuzz fuzz-seeds package ci clean
+.PHONY: help setup build run test test-all test-python wheels reference notebooks lint-packaging lint bench benchmarks fmt doc guide reproduce report paper measure plotly deny mutants sbom fuzz fuzz-seeds package ci clean
 
 help: ## List these commands
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-17s %s\n", $$1, $$2}'
@@ -50,41 +50,16 @@ lint: ## Check formatting, clippy and rustdoc; warnings are errors
 bench: ## Time the distance solvers on meshes of several sizes
 	$(CARGO) bench --locked -p bench
 
-# Runs bench/$(1).py with NumPy and other packages.
-define benchmark
+# Sections of docs/benchmarks.md; `make bench-peers` measures the first alone.
+SECTIONS = peers nmds preparation maps packages search duplicates capacity
+
+benchmarks: $(SECTIONS:%=bench-%) ## Measure all of docs/benchmarks.md (needs Python and test meshes; takes two hours)
+
+bench-%:
+	$(CARGO) build --release --locked -p canonform-cli -p canonform -p canonform-index -p canonform-datasets --bins --examples
 	test -x target/peers/bin/python || python3 -m venv target/peers
-	target/peers/bin/pip install --quiet numpy $(2)
-	target/peers/bin/python bench/$(1).py
-endef
-
-bench-peers: build ## Compare distance solvers with other programs and write its section of docs/benchmarks.md (needs Python and test meshes)
-	$(call benchmark,peers,scipy potpourri3d pygeodesic meshlib)
-
-bench-nmds: build ## Compare canonical forms with potpourri3d and NumPy and write its section of docs/benchmarks.md (needs Python and test meshes)
-	$(CARGO) build --release --locked -p canonform --example forms
-	$(call benchmark,nmds,potpourri3d)
-
-bench-preparation: ## Time the preparation of meshes and write its section of docs/benchmarks.md (needs Python and test meshes)
-	$(CARGO) build --release --locked -p canonform --example preparation
-	$(call benchmark,preparation,)
-
-bench-maps: build ## Compare dense maps with pyFM and write its section of docs/benchmarks.md (needs Python and test meshes)
-	$(CARGO) build --release --locked -p canonform-datasets --example placed_shapes
-	$(call benchmark,maps,scipy pyfmaps)
-
-bench-search: ## Compare search among up to a million vectors with faiss and hnswlib and write its section of docs/benchmarks.md (needs Python; takes a quarter of an hour)
-	$(CARGO) build --release --locked -p canonform-index --example vectors
-	$(call benchmark,search,hnswlib faiss-cpu)
-
-bench-capacity: build ## Measure what a shape costs, simulate ten million and write its section of docs/benchmarks.md (needs Python; takes an hour)
-	$(CARGO) build --release --locked -p canonform-index --example vectors
-	$(call benchmark,capacity,)
-
-bench-duplicates: build ## Time the search for duplicates among 1,000 generated shapes and write its section of docs/benchmarks.md (needs Python)
-	$(call benchmark,duplicates,)
-
-bench-packages: build ## Compare distances, embeddings and refusals with Python packages and write its section of docs/benchmarks.md (needs Python)
-	$(call benchmark,packages,--no-binary gdist scipy potpourri3d pygeodesic gdist scikit-learn)
+	target/peers/bin/pip install --quiet --no-binary gdist gdist numpy scipy scikit-learn potpourri3d pygeodesic meshlib pyfmaps faiss-cpu hnswlib
+	target/peers/bin/python bench/$*.py
 
 fmt: ## Format the sources
 	$(CARGO) fmt --all
@@ -114,7 +89,7 @@ paper: ## Write docs/paper.md from the results in OUT of `make reproduce DATASET
 
 measure: ## Measure again all that docs/paper.md and docs/benchmarks.md state, on DATASET=folder (needs Python and test meshes; takes hours)
 	$(MAKE) reproduce
-	$(MAKE) paper bench-peers bench-nmds bench-preparation bench-maps bench-packages bench-search bench-duplicates bench-capacity
+	$(MAKE) paper benchmarks
 
 plotly: ## Build the bundle of plotly.js that the pages embed (needs Node 20 and npm)
 	node crates/report/assets/plotly/build.mjs

@@ -66,7 +66,7 @@ def search(folder, counts):
     """Build, memory and latency by the number of signatures."""
     rows = []
     for n in counts:
-        data = signatures(n + QUERIES, DIM, 7, 0.3)
+        data = signatures(n + QUERIES, DIM)
         base, queries, index = (os.path.join(folder, name) for name in ("base.npy", "queries.npy", "vectors"))
         np.save(queries, data[n:])
         np.save(base, data[:n])
@@ -119,7 +119,9 @@ def digits(x):
 
 def section(args):
     with tempfile.TemporaryDirectory() as folder:
-        described, stored, searched = describe(folder, SIZES), store(folder, STORED), search(folder, VECTORS)
+        described = describe(folder, [n for n in SIZES if n <= args.vertices])
+        stored = store(folder, [n for n in STORED if n <= args.shapes])
+        searched = search(folder, [n for n in VECTORS if n <= args.vectors])
     random = np.random.default_rng(1)
     sizes = np.minimum(args.median * np.exp(args.sigma / 100 * random.standard_normal(SHAPES)), LARGEST)
     sizes = np.maximum(sizes, 200)
@@ -175,4 +177,4 @@ def section(args):
 
 
 if __name__ == "__main__":
-    benchmark(__doc__, section, median=5000, sigma=150)
+    benchmark(__doc__, section, median=5000, sigma=150, vertices=SIZES[-1], shapes=STORED[-1], vectors=VECTORS[-1])

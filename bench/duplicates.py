@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Times the search for duplicates in a collection of generated shapes, by the number of shapes.
 
-Needs no data. Half of a collection are different shapes: mechanical parts with parameters near each other, poses of random
-creatures, and poses of cats, centaurs and men. The others are copies of some of them: the same file, in other formats,
-moved, scaled, mirrored, renumbered, subdivided, with noise, with other arcs.
+Half of a collection are different shapes: mechanical parts with parameters near each other, and poses of creatures, cats, centaurs
+and men. The others are copies of some of them: the same file, in other formats, moved, scaled, mirrored, renumbered, subdivided, with
+noise, with other arcs.
 """
 import json
 import os

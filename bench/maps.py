@@ -1,12 +1,10 @@
 #!/usr/bin/env python3
 """Compares dense maps with pyFM: time of a pair, and error.
 
-Both map the same pairs of shapes with 5,000 vertices, one after the other, so that other load affects both alike: built-in men,
-and shapes of TOSCA in full resolution, each triangulated on its own. Both use all cores; processor
-seconds do not depend on other load. pyFM runs its quick start, which keeps
-the orientation: wave kernels, a map of 30 functions fitted with orientation operators, ZoomOut to 110. Times include the
-spectra of both shapes, and the processor seconds of canonform the whole program. The error of a vertex of A is the distance on B between its image under the
-direct map and its true partner, as a share of the square root of the area; a map has failed if its mean error is above a tenth.
+Both map the same pairs of shapes, one after the other, so that other load affects both alike: built-in men, and shapes of TOSCA in
+full resolution, each triangulated on its own. pyFM runs its quick start, which keeps the orientation. Times include the spectra of both
+shapes, and the processor seconds of canonform the whole program. The error of a vertex of A is the distance on B between its image
+under the direct map and its true partner, as a share of the square root of the area; a map fails if its mean error is above a tenth.
 """
 import glob
 import itertools

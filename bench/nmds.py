@@ -1,11 +1,9 @@
 #!/usr/bin/env python3
 """Compares our pipeline from mesh to canonical form with the same pipeline on potpourri3d and NumPy.
 
-Both sides start from vertices and faces in memory and end with coordinates: setup per mesh (for canonform including
-repair), ten farthest samples with their distances to all vertices, and Nystrom scaling of rank five, in processes
-that have run once before. The peers implement Procedures 1 and 2 of the paper in NumPy, with potpourri3d's fast
-marching and with its heat method; NumPy may use all cores. Stress is that of eq. 17, against exact distances from
-some vertices.
+Both sides start from vertices and faces in memory and end with coordinates: setup (for canonform including repair), farthest
+samples with their distances to all vertices, and Nystrom scaling. The peers implement Procedures 1 and 2 of the paper in NumPy, which
+may use all cores. Stress is that of eq. 17, against exact distances from some vertices.
 """
 import collections
 import os

@@ -1,10 +1,8 @@
 #!/usr/bin/env python3
 """Sets canonform beside the Python packages that people use: distances, embeddings, and what each does with broken meshes.
 
-Needs no data: shapes are generated. Distances are those of potpourri3d, pygeodesic and gdist, embeddings those of
-scikit-learn. Every package runs in a process of its own on one thread, because some crash. Packages are measured by
-processor time, so that other load does not count. For the solvers of canonform it is elapsed time, which load can only
-make longer.
+Needs no data: shapes are generated. Every package runs in a process of its own, because some crash. Packages are measured by
+processor time, so that other load does not count, the solvers of canonform by elapsed time, which load can only make longer.
 """
 import os
 import subprocess

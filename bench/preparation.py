@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
 """Times the preparation of a mesh, in milliseconds and in distance maps, over sizes, on one thread and on two.
 
-Preparation leads from vertices and faces in memory to a solver that is ready for its first source: repair, connectivity,
-edge lengths, intrinsic Delaunay flips, and the layout of one-rings. The unit is one distance map from one source on one
-thread.
+It leads from vertices and faces in memory to a solver that is ready for its first source: repair, connectivity, edge lengths,
+intrinsic Delaunay flips, and the layout of one-rings.
 """
 import json
 import os

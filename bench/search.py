@@ -1,14 +1,11 @@
 #!/usr/bin/env python3
 """Compares search among up to a million signatures with faiss and hnswlib: building, adding, opening, answering, memory.
 
-Synthetic signatures imitate those of shapes: families, classes of different sizes within them, and poses of a class on
-a curved manifold of few dimensions, with noise. Queries are such signatures that are not in the index. Each solver
-runs in its own process with the same threads and answers one query at a time. Rounds are interleaved, so that other
-load on the machine affects all solvers alike. An addition is on disk when it ends: canonform commits it, peers write
-their whole file. Files are in the cache of the system when they are opened; peers are timed without starting Python. hnswlib
-uses the least `ef` that reaches the recall on these queries; the others compare all signatures.
+Queries are synthetic signatures that are not in the index. Each solver runs in its own process with the same threads. Rounds are
+interleaved, so that other load affects all solvers alike. An addition is on disk when it ends: canonform commits it, peers write their
+whole file. Files are in the cache of the system when they are opened; peers are timed without starting Python. hnswlib uses the
+least `ef` that reaches the recall on these queries; the others compare all signatures.
 """
-import gc
 import os
 import sys
 import tempfile
@@ -21,15 +18,14 @@ from support import EXAMPLES, Asked, Peer, answer, benchmark, columns_table, mac
 VECTORS = os.path.join(EXAMPLES, "vectors")
 K = 10
 RECALL = 0.99
-WIDTH = 0.3
 WARMING = 20
 ADDED = 5
 EFS = [10, 20, 30, 40, 60, 80, 120, 160, 240, 320, 480, 640, 1000, 1500]
 
 
-def signatures(n, dim, seed, width):
-    """n points: families > classes of different sizes > poses on a manifold of six dimensions."""
-    random = np.random.default_rng(seed)
+def signatures(n, dim):
+    """n points like those of shapes: families > classes of different sizes > poses on a curved manifold of six dimensions, with noise."""
+    random = np.random.default_rng(7)
     families, classes, sheet = 50, max(50, n // 200), 6
     center = random.normal(size=(families, dim)).astype("f4")[random.integers(0, families, classes)]
     center += 0.6 * random.normal(size=(classes, dim)).astype("f4")
@@ -38,7 +34,7 @@ def signatures(n, dim, seed, width):
     of = np.sort(random.choice(classes, n, p=share / share.sum()))
     rows = np.empty((n, dim), "f4")
     for c, first, count in zip(*np.unique(of, return_index=True, return_counts=True)):
-        pose = width * random.normal(size=(count, sheet))
+        pose = 0.3 * random.normal(size=(count, sheet))
         pose[:, 0] += 0.3 * pose[:, 1] ** 2
         noise = 0.05 * random.normal(size=(count, dim))
         rows[first:first + count] = center[c] + pose @ basis[c] + noise
@@ -67,9 +63,6 @@ class Library:
     def open(self, path):
         self.read(path)
         return self.ask(self.queries[0]).tolist()
-
-    def settle(self):
-        gc.collect()
 
     def room(self):
         """For the additions."""
@@ -178,7 +171,6 @@ class Theirs:
     def serve(self):
         self.peer = self.start()
         self.peer.call("read", self.path)
-        self.peer.call("settle")
         self.process = self.peer.process
 
     def tune(self, truth):
@@ -235,7 +227,7 @@ def recall(found, truth):
 
 
 def measure(folder, n, args):
-    rows = signatures(n + args.queries, args.dim, 7, WIDTH)
+    rows = signatures(n + args.queries, args.dim)
     at = lambda name: os.path.join(folder, name)
     base, queries = at("base.npy"), at("queries.npy")
     np.save(base, rows[:n])

@@ -91,13 +91,11 @@ def read_mesh(path):
 
 
 def write_mesh(path, vertices, faces):
-    """As OBJ or OFF, by the name."""
-    vertex, face, first = ("v ", "f ", 1) if path.endswith(".obj") else ("", "3 ", 0)
+    """As OFF."""
     with open(path, "w") as file:
-        if not first:
-            file.write(f"OFF\n{len(vertices)} {len(faces)} 0\n")
-        file.writelines(vertex + "%.17g %.17g %.17g\n" % tuple(v) for v in vertices)
-        file.writelines(face + "%d %d %d\n" % tuple(f + first) for f in faces)
+        file.write(f"OFF\n{len(vertices)} {len(faces)} 0\n")
+        file.writelines("%.17g %.17g %.17g\n" % tuple(v) for v in vertices)
+        file.writelines("3 %d %d %d\n" % tuple(f) for f in faces)
 
 
 def subdivided(vertices, faces):
@@ -133,7 +131,7 @@ def answer(command, **how):
 
 
 def generate(folder, family, *options):
-    answer([CANONFORM, "generate", "--family", family, *map(str, options), "-q", "--json", "-o", folder])
+    run([CANONFORM, "generate", "--family", family, *map(str, options), "-q", "--json", "-o", folder])
 
 
 def distances(mesh, method, sources):
