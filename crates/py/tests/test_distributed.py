@@ -12,7 +12,7 @@ import pytest
 pytest.importorskip("distributed")
 
 from canonform import Index  # noqa: E402
-from canonform.distributed import batches_by_size, build_index, distance_matrix  # noqa: E402
+from canonform.distributed import _batches, build_index  # noqa: E402
 from canonform.datasets import Shape  # noqa: E402
 from canonform.errors import MeshError, OptionError  # noqa: E402
 from distributed import Client  # noqa: E402
@@ -34,13 +34,13 @@ def exported(index: Index, folder: Path, name: str) -> bytes:
 
 def test_batches_are_even_and_begin_with_the_largest() -> None:
     sizes = [5, 1, 1, 100, 1, 40, 1, 1, 50, 3]
-    batches = batches_by_size(sizes, 3)
+    batches = _batches(sizes, 3)
     assert batches[0] == [3] and sorted(sum(batches, [])) == list(range(10))
     # 203 in all: a batch holds 67, unless one item is larger.
     assert [sum(sizes[item] for item in batch) for batch in batches] == [100, 50, 53]
     assert [max(sizes[item] for item in batch) for batch in batches] == [100, 50, 40]
-    assert [len(batch) for batch in batches_by_size([1] * 10, 1, most=4)] == [4, 4, 2]
-    assert batches_by_size([], 3) == [] and batches_by_size([0, 0], 5) == [[0, 1]]
+    assert [len(batch) for batch in _batches([1] * 10, 1, most=4)] == [4, 4, 2]
+    assert _batches([], 3) == [] and _batches([0, 0], 5) == [[0, 1]]
 
 
 def test_two_workers_make_the_index_of_one_process(client: Client, single: Index, collection: Path, tmp_path: Path) -> None:
@@ -164,16 +164,3 @@ def test_paths_make_the_index_of_their_folder(client: Client, single: Index, col
         build_index([], client, tmp_path / "none.canonform")
     with pytest.raises(OptionError, match="ends with space"):
         Index.build([f"{paths[0]} "], tmp_path / "none.canonform")
-
-
-def test_the_matrix_of_distances_is_that_of_the_index(client: Client, index: Index) -> None:
-    for kind in ("combined", "fused"):
-        ids, matrix = distance_matrix(index, client, kind=kind, block=4)
-        assert ids == list(index)
-        np.testing.assert_array_equal(matrix, index.distances(kind=kind))
-        np.testing.assert_array_equal(matrix, matrix.T)
-    found = index.search("cat0", k=9)
-    row = dict(zip(ids, distance_matrix(index, client)[1][ids.index("cat0")], strict=True))
-    assert row[found[1].id] == pytest.approx(found[1].distance, rel=1e-6)
-    with pytest.raises(OptionError, match='"combined"'):
-        distance_matrix(index, client, kind="magic")

@@ -103,7 +103,7 @@ def test_an_index_from_memory_has_no_surprises(shapes: list[Shape], tmp_path: Pa
     assert not (tmp_path / "i.canonform.meshes").exists()
     with pytest.raises(MissingFileError, match="keep_meshes=True"):
         index.surface("cats/tom")
-    assert [found[0].id for found in index.search_many([tom, "men/don"], k=1)] == ["cats/tom", "men/don"]
+    assert [index.search(query, k=1)[0].id for query in (tom, "men/don")] == ["cats/tom", "men/don"]
     # Without its own vote: a class of one shape is unknown, or the other class.
     assert index.classify("cats/tom") == "cat"
     alone = Index.build({"cat1": tom, "cat2": tim, "dave": dave}, tmp_path / "alone.canonform", labels=["cat", "cat", "david"])

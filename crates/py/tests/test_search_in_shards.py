@@ -18,7 +18,7 @@ pytest.importorskip("distributed")
 
 import canonform  # noqa: E402
 from canonform import Index, SearchResults, _vectors  # noqa: E402
-from canonform.distributed import distance_matrix, search, vector_table  # noqa: E402
+from canonform.distributed import search, vector_table  # noqa: E402
 from canonform.errors import MemoryLimitError, NoSuchShapeError, OptionError, ShapeIndexError, TimeLimitError  # noqa: E402
 from distributed import Client  # noqa: E402
 
@@ -121,11 +121,7 @@ def test_components_are_found_in_other_indexes(client: Client, collection: Path,
 
 
 @pytest.mark.slow
-def test_a_killed_worker_costs_a_retry(
-    own_client: Client, whole: Index, shards: list[Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    # As if the table were too large for one process.
-    monkeypatch.setattr(_vectors, "ALONE", 0)
+def test_a_killed_worker_costs_a_retry(own_client: Client, whole: Index, shards: list[Path], tmp_path: Path) -> None:
     table = tmp_path / "shapes.lance"
     vector_table(shards, table)
     expected = found(whole.search("cat1", 5))
@@ -178,7 +174,7 @@ def test_shapes_are_added_while_others_search(
 
 
 @pytest.mark.slow
-def test_coded_vectors_state_their_recall(client: Client, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_coded_vectors_state_their_recall(client: Client, tmp_path: Path) -> None:
     random = np.random.default_rng(0)
     centers = random.normal(size=(40, 20))
     vectors = (centers[random.integers(0, 40, 3000)] + 0.3 * random.normal(size=(3000, 20))).astype("f4")
@@ -192,19 +188,16 @@ def test_coded_vectors_state_their_recall(client: Client, tmp_path: Path, monkey
     facts.partitions = _vectors.train(table, 2, lambda task, items: client.gather([client.submit(task, *i) for i in items]))
     facts.probes, facts.recall = _vectors.calibrate(table)
     assert facts.partitions == 54 and 0 < facts.probes < 54 and 0.95 < facts.recall <= 1
-    pieces = _vectors.pieces(table)
-    assert [len(piece.segments) for piece in pieces] == [1, 1] and _vectors.unindexed(table) == 0
+    [coded] = table.describe_indices()
+    assert len(coded.segments) == 2 and _vectors.unindexed(table) == 0
     # New rows are found beside the coded ones.
     table.insert(_vectors.rows(["new"], [""], [""], "x.canonform", vectors[:1] + 1e-4))
     assert _vectors.unindexed(table) == 1
-    query = _vectors.padded(table, vectors[0])
-    alone = _vectors.nearest(table, query, 40, facts.probes)
-    merged = sorted(near for piece in _vectors.pieces(table) for near in _vectors.nearest_in(piece, query, 40, facts.probes))
+    near = _vectors.nearest(table, _vectors.padded(table, vectors[0]), 40, facts.probes)
     # Distances of coded vectors are estimates, so the ten nearest are among the candidates, in some order.
     truth = {names[i] for i in np.argsort(((vectors - vectors[0]) ** 2).sum(axis=1))[:10]}
-    for some in (alone, merged[:40]):
-        candidates = {name for _, name, _ in some}
-        assert {"s0", "new"} <= candidates and len(truth & candidates) >= 9
+    candidates = {name for _, name, _ in near}
+    assert {"s0", "new"} <= candidates and len(truth & candidates) >= 9
 
 
 @pytest.mark.slow
@@ -246,8 +239,6 @@ def test_calls_end_at_their_limits(client: Client, shards: list[Path], whole: In
     for given in ({}, {"client": client}):
         with pytest.raises(TimeLimitError, match="timeout="):
             search(table, "cat1", timeout=1e-9, **given)
-    with pytest.raises(TimeLimitError, match="timeout="):
-        distance_matrix(whole, client, timeout=0.01)
     with pytest.raises(MemoryLimitError, match="memory="):
         search(table, whole.surface("cat1"), memory=1000)
     assert len(search(table, "cat1", 3, client=client, timeout=60, memory="2G")) == 3

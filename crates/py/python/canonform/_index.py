@@ -46,16 +46,11 @@ _PICTURED = 6
 class ShapeEntry:
     """A shape of an index.
 
-    Attributes
-    ----------
-    id
-        Its name.
-    label
-        Its class; empty if it has none.
-    path
-        Its mesh file.
-    n_vertices, n_faces
-        The size of its mesh.
+    Attributes:
+        id: Its name.
+        label: Its class; empty if it has none.
+        path: Its mesh file.
+        n_vertices, n_faces: The size of its mesh.
 
     >>> index["cat0"].label, index["cat0"].n_vertices
     ('cat', 1000)
@@ -72,32 +67,19 @@ class ShapeEntry:
 class Result:
     """A shape that was found.
 
-    Attributes
-    ----------
-    rank
-        Counted from 1.
-    id
-        Its name.
-    label
-        Its class; empty if it has none.
-    path
-        Its mesh file.
-    distance
-        Combined distance from the query, by signatures and aligned forms.
-    fused
-        Distance by signatures alone.
-    relation
-        How the query and the shape are related, as in `Comparison.relation`; by files and meshes, too, if the search explains.
-    rank_distance
-        What results are ordered by if they are ranked on the graph of nearest neighbors.
-    part_distance
-        What results are ordered by if the query is taken as a part: 0 if it fits.
-    part_share
-        The share of the area of the shape that the query has if it is taken as a part.
-    surface_gap
-        What the first results are ordered by if the query has noise: how far their surfaces are from its own.
-    form_distance
-        What results are ordered by if they are ranked by canonical forms alone.
+    Attributes:
+        rank: Counted from 1.
+        id: Its name.
+        label: Its class; empty if it has none.
+        path: Its mesh file.
+        distance: Combined distance from the query, by signatures and aligned forms.
+        fused: Distance by signatures alone.
+        relation: How the query and the shape are related, as in `Comparison.relation`; by files and meshes, too, if the search explains.
+        rank_distance: What results are ordered by if they are ranked on the graph of nearest neighbors.
+        part_distance: What results are ordered by if the query is taken as a part: 0 if it fits.
+        part_share: The share of the area of the shape that the query has if it is taken as a part.
+        surface_gap: What the first results are ordered by if the query has noise: how far their surfaces are from its own.
+        form_distance: What results are ordered by if they are ranked by canonical forms alone.
 
     >>> result = index.search("cat0", k=1)[0]
     >>> result.rank, result.id, result.label
@@ -127,10 +109,8 @@ class _Surfaces(Protocol):
 class SearchResults(Stored, Sequence[Result]):
     """The shapes nearest to a query, nearest first.
 
-    Attributes
-    ----------
-    report
-        The answer that `canonform search --json` prints.
+    Attributes:
+        report: The answer that `canonform search --json` prints.
 
     >>> results = index.search(cat, k=2)
     >>> results.label, [result.id for result in results]
@@ -218,11 +198,9 @@ class Index(Stored):
     them by their aligned forms. Other programs may search it at the same time, also while it is changed; methods that change it continue
     to work with the new content.
 
-    Attributes
-    ----------
-    build_report
-        What happened to each mesh when this object built or changed the index: the object that `canonform index build --json`
-        prints.
+    Attributes:
+        build_report: What happened to each mesh when this object built or changed the index: the object that `canonform index build --json`
+            prints.
 
     >>> len(index), "cat0" in index, index.classify(other)
     (9, True, 'cat')
@@ -266,35 +244,24 @@ class Index(Stored):
         Only new and changed meshes are described. After an interruption, call it again: finished work is kept. Meshes that cannot be
         described are left out and listed in `build_report["failed"]`.
 
-        Parameters
-        ----------
-        meshes
-            A folder, also with sub-folders, an archive, a list file, or paths of mesh files. Or meshes in memory, as `Surface` takes
-            them: a dictionary from names to meshes, or (name, mesh) and (name, mesh, class). A name may have folders: "cats/tom".
-        path
-            The index.
-        labels
-            Where classes come from: "folders", "folders:N" (the N-th below), "names" (their leading letters), "none", classes in the
-            order of the meshes or by name of the shape, or a file of lines `name,label`; shapes that are not named there have no class.
-            By default, an index keeps those that were given; else sub-folders beside each other are classes if at least two hold at
-            least two meshes each and none lies in another, else leading letters if at least two names share them.
-        prune
-            Remove shapes of the index that came from elsewhere. Those of the same folder whose files are gone, and those in memory that
-            are not among these meshes any more, are always removed.
-        keep_meshes
-            Whether to keep meshes in memory as files in the folder PATH.meshes. Without them, results are not explained or drawn.
-        shard
-            (i, k) to index the i-th of k equal parts of the meshes, counted from 1; `merge` joins them.
-        n_points
-            Number of points of each form to keep for alignment.
-        size
-            Whether to distinguish shapes by size; then all meshes need the same unit of length.
-        n_landmarks, method, geodesic, seed
-            How forms are made, see `Surface.canonical_form`.
-        components, weld
-            How meshes are repaired, see `Surface`.
-        max_vertices, timeout, memory
-            Limits on each mesh; what exceeds them is left out.
+        Args:
+            meshes: A folder, also with sub-folders, an archive, a list file, or paths of mesh files. Or meshes in memory, as `Surface`
+                takes them: a dictionary from names to meshes, or (name, mesh) and (name, mesh, class). A name may have folders: "cats/tom".
+            path: The index.
+            labels: Where classes come from: "folders", "folders:N" (the N-th below), "names" (their leading letters), "none", classes in
+                the order of the meshes or by name of the shape, or a file of lines `name,label`; shapes that are not named there have no
+                class. By default, an index keeps those that were given; else sub-folders beside each other are classes if at least two hold
+                at least two meshes each and none lies in another, else leading letters if at least two names share them.
+            prune: Remove shapes of the index that came from elsewhere. Those of the same folder whose files are gone, and those in memory
+                that are not among these meshes any more, are always removed.
+            keep_meshes: Whether to keep meshes in memory as files in the folder PATH.meshes. Without them, results are not explained or
+                drawn.
+            shard: (i, k) to index the i-th of k equal parts of the meshes, counted from 1; `merge` joins them.
+            n_points: Number of points of each form to keep for alignment.
+            size: Whether to distinguish shapes by size; then all meshes need the same unit of length.
+            n_landmarks, method, geodesic, seed: How forms are made, see `Surface.canonical_form`.
+            components, weld: How meshes are repaired, see `Surface`.
+            max_vertices, timeout, memory: Limits on each mesh; what exceeds them is left out.
 
         Raises `MeshError` if there are no meshes, or none of them can be described.
         Raises `ShapeIndexError` if the file is not an index, or was made with other options.
@@ -308,7 +275,8 @@ class Index(Stored):
         )  # fmt: skip
         part = None if shard is None else (whole("shard", shard[0]), whole("shard", shard[1], 1))
         with running(call), in_files(meshes, path, labels, keep=keep_meshes) as files:
-            with _label_file(files.labels) as label_file, _dataset(files.paths) as (dataset, name):
+            with TemporaryDirectory() as lists:
+                (dataset, name), label_file = dataset_of(files.paths, lists), label_file_of(files.labels, lists)
                 report = json.loads(_canonform.Index.build(dataset, os.fspath(path), label_file, bool(prune), part, None, False, settings))
         report["failed"] += files.failed
         if not os.path.exists(path):
@@ -321,12 +289,7 @@ class Index(Stored):
 
     @classmethod
     def merge(cls, indexes: Iterable[AnyPath], path: AnyPath, **call: Unpack[Call]) -> Index:
-        """Merge indexes, for example those of shards, into one file, and open it.
-
-        Parameters
-        ----------
-        indexes
-            Paths of indexes that were made with the same options.
+        """Merge `indexes` by their paths, for example those of shards, into one file, `path`, and open it.
 
         Raises `ShapeIndexError` if they have other options, or different shapes of the same name.
 
@@ -355,13 +318,10 @@ class Index(Stored):
     ) -> dict[str, Any]:
         """Add meshes as in `build`: files, folders of them, or meshes in memory, described with the options of the index. Returns what happened to each.
 
-        Parameters
-        ----------
-        label
-            The class of all of them. By default from their names, or from `labels`.
-        replace
-            Replace shapes that have the same name. Otherwise a shape of the same name with another content is an error, and nothing is
-            added.
+        Args:
+            label: The class of all of them. By default from their names, or from `labels`.
+            replace: Replace shapes that have the same name. Otherwise a shape of the same name with another content is an error, and
+                nothing is added.
 
         Raises `ShapeIndexError`, `OptionError` if a shape of the name has another content, or options contradict each other.
 
@@ -375,7 +335,8 @@ class Index(Stored):
             if label is not None and files.labels is not None:
                 raise OptionError("label= has no effect for meshes that come with a class; leave one of them out")
             paths = [files.paths] if isinstance(files.paths, (str, os.PathLike)) else files.paths
-            with _label_file(files.labels) as label_file:
+            with TemporaryDirectory() as lists:
+                label_file = label_file_of(files.labels, lists)
                 added = _canonform.Index.add(self.path, [os.fspath(path) for path in paths], label, label_file, bool(replace), settings)
         report = json.loads(added)
         report["failed"] += files.failed
@@ -384,17 +345,9 @@ class Index(Stored):
         return self.build_report or {}
 
     def remove(self, ids: str | Iterable[str]) -> int:
-        """Remove shapes by name; none if one of the names is unknown. Returns how many shapes are left.
-
-        Parameters
-        ----------
-        ids
-            One name, or several.
+        """Remove the shapes of these names, `ids`; none if one is unknown. Returns how many shapes are left.
 
         Raises `NoSuchShapeError` if the index has no shape of this name.
-
-        >>> index.add({"copy": cat})["n_shapes"], index.remove(["copy"])
-        (10, 9)
         """
         left = _canonform.Index.remove(self.path, [ids] if isinstance(ids, str) else [word("ids", id) for id in ids])
         self._reopen(None)
@@ -403,41 +356,18 @@ class Index(Stored):
     def _reopen(self, report: dict[str, Any] | None) -> None:
         self._inner, self.build_report = _canonform.Index.open(self.path), report
 
-    def search_many(
-        self, queries: Iterable[AnyMesh], k: int = 10, *, rank: Ranking = "plain", explain: bool = False, **call: Unpack[Call]
-    ) -> list[SearchResults]:
-        """Find the shapes nearest to each of several queries, as `search` does.
-
-        Parameters
-        ----------
-        queries
-            Each as in `search`.
-
-        Raises `NoSuchShapeError`, `MeshError` if a query is neither a file, nor a shape of the index, nor a mesh.
-
-        >>> [results[0].id for results in index.search_many([other, "david0"], k=1)]
-        ['cat1', 'david0']
-        """
-        with running(call):
-            return [self.search(query, k, rank=rank, explain=explain) for query in queries]
-
     def search(
         self, query: AnyMesh, k: int = 10, *, rank: Ranking = "plain", explain: bool = False, **call: Unpack[Call]
     ) -> SearchResults:
         """Find the shapes nearest to a query.
 
-        Parameters
-        ----------
-        query
-            A surface, a mesh as `Surface` takes it, a mesh file, or the name of a shape of the index.
-        k
-            Number of results.
-        rank
-            "plain" orders results by distance, "graph" by distance and by the neighbors that query and shape have in common,
-            "part" by how well the query fits as a part of the shape, for a mesh that was cut or scanned in part, "forms" by
-            canonical forms alone.
-        explain
-            Say how each result is related to the query, as `compare` does; reads the mesh files of the results.
+        Args:
+            query: A surface, a mesh as `Surface` takes it, a mesh file, or the name of a shape of the index.
+            k: Number of results.
+            rank: "plain" orders results by distance, "graph" by distance and by the neighbors that query and shape have in common, "part"
+                by how well the query fits as a part of the shape, for a mesh that was cut or scanned in part, "forms" by canonical forms
+                alone.
+            explain: Say how each result is related to the query, as `compare` does; reads the mesh files of the results.
 
         Raises `NoSuchShapeError`, `MeshError` if the query is neither a file, nor a shape of the index, nor a mesh.
 
@@ -477,18 +407,13 @@ class Index(Stored):
     ) -> Scores:
         """How well the index separates classes.
 
-        Parameters
-        ----------
-        by
-            What shapes are compared by: "fused", or the kind of signatures, see `Surface.signature`; "combined" for the distances that a
-            search orders results by, with aligned forms; or a matrix of your own, with a row and a column for each shape in the order of
-            `shapes`.
-        k
-            Number of neighbors that vote on the class of a shape.
-        rank
-            "plain", or "graph" to score the ranking on the graph of nearest neighbors as well, under the key `graph`.
-        labels
-            Other classes, as in `build`.
+        Args:
+            by: What shapes are compared by: "fused", or the kind of signatures, see `Surface.signature`; "combined" for the distances that
+                a search orders results by, with aligned forms; or a matrix of your own, with a row and a column for each shape in the order
+                of `shapes`.
+            k: Number of neighbors that vote on the class of a shape.
+            rank: "plain", or "graph" to score the ranking on the graph of nearest neighbors as well, under the key `graph`.
+            labels: Other classes, as in `build`.
 
         Raises `OptionError` if options are not possible, or classes are not one for each shape.
 
@@ -502,8 +427,9 @@ class Index(Stored):
             labels = dict(zip(ids, labels, strict=True))
         with running(call):
             if isinstance(by, str) and by != "combined":
-                with _label_file(labels) as label_file:
-                    return Scores(json.loads(self._inner.evaluate(by, whole("k", k), word("rank", rank), label_file)))
+                with TemporaryDirectory() as lists:
+                    file = label_file_of(labels, lists)
+                    return Scores(json.loads(self._inner.evaluate(by, whole("k", k), word("rank", rank), file)))
             if isinstance(labels, (str, os.PathLike)):
                 raise OptionError("labels= needs classes by name here, or in the order of the shapes")
             known = {shape.id: shape.label for shape in self.shapes()} if labels is None else labels
@@ -531,27 +457,14 @@ class Index(Stored):
         return self._inner.vectors()
 
     def vector(self, id: str) -> NDArray[np.float32]:
-        """The fused signature of one shape.
-
-        Parameters
-        ----------
-        id
-            The name of a shape.
+        """The fused signature of the shape `id`.
 
         Raises `NoSuchShapeError` if the index has no shape of this name.
-
-        >>> bool(np.array_equal(index.vector("cat0"), cat.signature()))
-        True
         """
         return self._inner.vector(word("id", id))
 
     def nearest(self, vector: ArrayLike, k: int = 10, **call: Unpack[Call]) -> list[tuple[str, float]]:
-        """The shapes whose signatures are nearest to a vector, such as `Surface.signature()`: names and distances, nearest first.
-
-        Parameters
-        ----------
-        vector
-            Shape (length,), as those of `vectors`.
+        """The `k` shapes whose signatures are nearest to `vector`, such as `Surface.signature()`: names and distances, nearest first.
 
         Raises `ShapeIndexError` if the vector has another length.
 
@@ -569,20 +482,12 @@ class Index(Stored):
         kind: IndexDistance = "combined",
         **call: Unpack[Call],
     ) -> Floats:
-        """Distances between shapes of the index, in parallel: all of them by default.
+        """Distances between shapes of the index, in parallel: all of them by default, else shape (len(ids), len(others)).
 
-        Parameters
-        ----------
-        ids
-            Names of shapes. By default all, in the order of `shapes`.
-        others
-            Names of other shapes. By default the same, and the matrix is symmetric.
-        kind
-            "combined" aligns the forms of every pair; "fused" compares signatures only, and is much faster.
-
-        Returns
-        -------
-        ndarray of shape (len(ids), len(others))
+        Args:
+            ids: Names of shapes. By default all, in the order of `shapes`.
+            others: Names of other shapes. By default the same, and the matrix is symmetric.
+            kind: "combined" aligns the forms of every pair; "fused" compares signatures only, and is much faster.
 
         Raises `NoSuchShapeError` if the index has no shape of this name.
 
@@ -594,12 +499,9 @@ class Index(Stored):
             return self._inner.distances(rows, None if others is None else list(others), word("kind", kind))
 
     def surface(self, id: str, **call: Unpack[Call]) -> Surface:
-        """The surface of a shape. Its mesh file must be where it was, and unchanged.
+        """The surface of the shape `id`. Its mesh file must be where it was, and unchanged.
 
         Raises `NoSuchShapeError`, `MissingFileError`, `ShapeIndexError` if the index has no such shape, or its mesh is gone or changed.
-
-        >>> index.surface("cat0").n_vertices
-        1000
         """
         try:
             with running(call):
@@ -628,17 +530,12 @@ class Index(Stored):
         keys, and the `relation` to the shape `of`: the keeper, or a member of which it is an exact copy. It is proved by the
         triangles of both. Nothing is changed.
 
-        Parameters
-        ----------
-        kinds
-            Kinds of relation, by default "identical-file", "identical-geometry", "scaled", "mirrored", "noisy" and "remeshed"; also
-            "copies", "part-of", "variant" and "other-pose".
-        min_confidence
-            The least confidence, 0 to 1.
-        keep
-            Which file of a group is kept: "exact", "largest", "smallest", "oldest", "newest", or one in a folder.
-        reference
-            Folders and archives from which nothing is to be removed.
+        Args:
+            kinds: Kinds of relation, by default "identical-file", "identical-geometry", "scaled", "mirrored", "noisy" and "remeshed"; also
+                "copies", "part-of", "variant" and "other-pose".
+            min_confidence: The least confidence, 0 to 1.
+            keep: Which file of a group is kept: "exact", "largest", "smallest", "oldest", "newest", or one in a folder.
+            reference: Folders and archives from which nothing is to be removed.
 
         Raises `OptionError` if there is no such kind of relation.
 
@@ -655,13 +552,11 @@ class Index(Stored):
         return json.loads(found)["groups"]
 
     def export(self, path: AnyPath, **call: Unpack[Call]) -> None:
-        """Write the index, the same however it was built. The extension tells the format: jsonl, parquet, npz or csv.
+        """Write the index to `path`, the same however it was built. The extension tells the format: jsonl, parquet, npz or csv.
 
         With the extension lance, write its vectors to a table as `distributed.vector_table` does.
 
         Raises `OptionError`, `FileError` if there is no such format, or the file cannot be written.
-
-        >>> index.export("shapes.csv")
         """
         if os.fspath(path).endswith(".lance"):
             from .distributed import vector_table
@@ -820,15 +715,10 @@ def _kept(mesh: tuple[Floats, Ints], path: str, replace: bool) -> str:
     return path
 
 
-@contextmanager
-def _dataset(meshes: AnyPath | Iterable[AnyPath], folder: str | None = None) -> Iterator[tuple[str, str]]:
-    """The path of a dataset, and what to call it: the one given, or a list file of the paths given.
-
-    The list is written to `folder`, which keeps it, or to a temporary one.
-    """
+def dataset_of(meshes: AnyPath | Iterable[AnyPath], folder: str) -> tuple[str, str]:
+    """The path of a dataset, and what to call it: the one given, or a list file in a folder of the paths given."""
     if isinstance(meshes, (str, os.PathLike)):
-        yield os.fspath(meshes), os.fspath(meshes)
-        return
+        return os.fspath(meshes), os.fspath(meshes)
     paths = [os.path.abspath(path) for path in meshes]
     for path in paths:
         # A list has one path in each line, without the space around it.
@@ -836,33 +726,24 @@ def _dataset(meshes: AnyPath | Iterable[AnyPath], folder: str | None = None) -> 
             raise OptionError(f"the path {path!r} is not possible in a list: it begins or ends with space, or has several lines")
     if not paths:
         raise OptionError("meshes=[] is not possible: give a folder, an archive, a list file, or paths of mesh files")
-    with TemporaryDirectory() as temporary:
-        name = os.path.join(folder or temporary, "meshes.txt")
-        with open(name, "w", encoding="utf-8") as file:
-            file.writelines(f"{path}\n" for path in paths)
-        yield name, f"{len(paths)} paths"
+    name = os.path.join(folder, "meshes.txt")
+    with open(name, "w", encoding="utf-8") as file:
+        file.writelines(f"{path}\n" for path in paths)
+    return name, f"{len(paths)} paths"
 
 
-@contextmanager
-def _label_file(labels: Labels | None) -> Iterator[str | None]:
-    """The word or file given, or a temporary file with the labels given."""
+def label_file_of(labels: Labels | None, folder: str) -> str | None:
+    """The word or file given, or a file in a folder with the labels given."""
     if labels is None or isinstance(labels, (str, os.PathLike)):
-        yield None if labels is None else os.fspath(labels)
-        return
+        return None if labels is None else os.fspath(labels)
     if not isinstance(labels, Mapping):
         raise OptionError(f"labels={labels!r} is not possible: give classes by name, in the order of the meshes, or a file")
     if not labels:
-        yield "none"
-        return
-    with TemporaryDirectory() as folder:
-        path = os.path.join(folder, "labels.csv")
-        with open(path, "w", encoding="utf-8", newline="") as file:
-            rows = csv.writer(file, quoting=csv.QUOTE_ALL)
-            rows.writerow(["name", "label"])
-            for name, label in labels.items():
-                if not label:
-                    continue
-                if any(c in f"{name}{label}" for c in "\n\r"):
-                    raise OptionError(f"labels={{{name!r}: {label!r}}} is not possible: a line break in a name or class")
-                rows.writerow([name, label])
-        yield path
+        return "none"
+    for name, label in labels.items():
+        if label and any(c in f"{name}{label}" for c in "\n\r"):
+            raise OptionError(f"labels={{{name!r}: {label!r}}} is not possible: a line break in a name or class")
+    path = os.path.join(folder, "labels.csv")
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        csv.writer(file, quoting=csv.QUOTE_ALL).writerows([("name", "label"), *(pair for pair in labels.items() if pair[1])])
+    return path

@@ -30,9 +30,6 @@ _NAME = "vector_idx"
 LEAST = 50_000
 """Up to so many vectors all are compared, as in an index."""
 
-ALONE = 20_000_000
-"""Up to so many vectors are searched by the process that asks: a task of a cluster takes longer."""
-
 _WIDTH = 8
 """Vectors are padded to a multiple of so many numbers, which Lance asks for."""
 
@@ -63,20 +60,13 @@ def lance_module() -> Any:
 class About:
     """What a table says about itself.
 
-    Attributes
-    ----------
-    options
-        How the shapes were described.
-    classes
-        How well classes and distances of all shapes agree.
-    shards
-        Size and time of each index when it was read.
-    probes
-        Partitions that a search visits; 0 if it compares all vectors.
-    partitions
-        Partitions of the vectors.
-    recall
-        Share of the ten nearest that searches find, measured on queries that neither trained the partitions nor chose `probes`.
+    Attributes:
+        options: How the shapes were described.
+        classes: How well classes and distances of all shapes agree.
+        shards: Size and time of each index when it was read.
+        probes: Partitions that a search visits; 0 if it compares all vectors.
+        partitions: Partitions of the vectors.
+        recall: Share of the ten nearest that searches find, measured on queries that neither trained the partitions nor chose `probes`.
     """
 
     options: str = ""
@@ -181,60 +171,10 @@ def matrix(table: pyarrow.Table) -> Vectors:
     return column.flatten().to_numpy(zero_copy_only=False).reshape(len(table), -1)
 
 
-@dataclass(frozen=True)
-class Piece:
-    """A part of a version of a table that one task searches: segments of its vector index, or fragments that no segment covers."""
-
-    path: str
-    version: int
-    segments: tuple[str, ...] = ()
-    fragments: tuple[int, ...] = ()
-
-
-def pieces(table: lance.LanceDataset) -> list[Piece]:
-    """The parts of a table that can be searched apart from each other."""
-    uri, version = table.uri, table.version
-    left = {fragment.fragment_id for fragment in table.get_fragments()}
-    found = []
-    for index in table.describe_indices():
-        if index.name == _NAME:
-            for segment in index.segments:
-                left -= set(segment.fragment_ids)
-                found.append(Piece(uri, version, segments=(str(segment.uuid),)))
-    return found + [Piece(uri, version, fragments=(fragment,)) for fragment in sorted(left)]
-
-
-def nearest_in(piece: Piece, query: Vectors, n: int, probes: int) -> list[Near]:
-    """The shapes of a part nearest to a padded vector."""
-    table = opened(piece.path, piece.version)
-    if piece.segments:
-        near = {"column": "vector", "q": query, "k": n, "nprobes": probes}
-        scanner = table.scanner(
-            columns=["id", "shard", "_distance"], nearest=near, index_segments=list(piece.segments), fast_search=True
-        )
-        return _listed(scanner.to_table())
-    found: list[Near] = []
-    fragments = [table.get_fragment(fragment) for fragment in piece.fragments]
-    for batch in table.scanner(columns=["id", "shard", "vector"], fragments=fragments).to_batches():
-        import pyarrow as pa
-
-        these = pa.Table.from_batches([batch])
-        distances = ((matrix(these) - query) ** 2).sum(axis=1)
-        best = np.argsort(distances, kind="stable")[:n]
-        chosen = these.select(["id", "shard"]).take(best).to_pydict()
-        found += zip(distances[best].tolist(), chosen["id"], chosen["shard"], strict=True)
-        found = sorted(found)[:n]
-    return found
-
-
 def nearest(table: lance.LanceDataset, query: Vectors, n: int, probes: int) -> list[Near]:
-    """The shapes of a table nearest to a padded vector, found by this process."""
+    """The shapes of a table nearest to a padded vector; with no probes, among all vectors."""
     near = {"column": "vector", "q": query, "k": n, "use_index": probes > 0} | ({"nprobes": probes} if probes else {})
-    return _listed(table.scanner(columns=["id", "shard", "_distance"], nearest=near).to_table())
-
-
-def _listed(found: pyarrow.Table) -> list[Near]:
-    given = found.to_pydict()
+    given = table.scanner(columns=["id", "shard", "_distance"], nearest=near).to_table().to_pydict()
     return sorted(zip(given["_distance"], given["id"], given["shard"], strict=True))
 
 
@@ -247,8 +187,8 @@ def padded(table: lance.LanceDataset, vector: Vectors) -> Vectors:
 
 def unindexed(table: lance.LanceDataset) -> int:
     """Rows that no segment of the vector index covers."""
-    loose = [fragment for piece in pieces(table) for fragment in piece.fragments]
-    return sum(table.get_fragment(fragment).count_rows() for fragment in loose)
+    has_index = any(index.name == _NAME for index in table.describe_indices())
+    return int(table.stats.index_stats(_NAME)["num_unindexed_rows"]) if has_index else table.count_rows()
 
 
 def train(table: lance.LanceDataset, n_segments: int, run: Any) -> int:
@@ -299,9 +239,9 @@ def calibrate(table: lance.LanceDataset) -> tuple[int, float]:
     places = np.random.default_rng(0).permutation(table.count_rows())[: 2 * _QUERIES]
     asked = table.take(np.sort(places).tolist(), columns=["id", "vector"])
     names, queries = asked["id"].to_pylist(), matrix(asked)
-    truth = exact_neighbors(table, names, queries)
-    order = np.random.default_rng(1).permutation(len(names))
-    halves = np.array_split(order, 2)
+    found = [[name for _, name, _ in nearest(table, query, _NEAREST + 1, 0)] for query in queries]
+    truth = [set([name for name in near if name != own][:_NEAREST]) for own, near in zip(names, found, strict=True)]
+    halves = np.array_split(np.random.default_rng(1).permutation(len(names)), 2)
 
     def recall(chosen: NDArray[Any], probes: int) -> float:
         found = [{name for _, name, _ in nearest(table, queries[i], 4 * _NEAREST, probes)} for i in chosen]
@@ -311,32 +251,6 @@ def calibrate(table: lance.LanceDataset) -> tuple[int, float]:
     while recall(halves[0], probes) < _RECALL and probes < table.count_rows():
         probes *= 2
     return probes, recall(halves[1], probes)
-
-
-def exact_neighbors(table: lance.LanceDataset, names: list[str], queries: Vectors) -> list[set[str]]:
-    """The names of the ten nearest other rows of each query, by comparing all."""
-    import pyarrow as pa
-
-    best = np.full((len(names), _NEAREST + 1), np.inf, np.float32)
-    rows = np.full(best.shape, -1, np.int64)
-    first = 0
-    for batch in table.scanner(columns=["vector"], batch_size=_BATCH, scan_in_order=True).to_batches():
-        vectors = matrix(pa.Table.from_batches([batch]))
-        # The same for all rows of a query but its own square.
-        distances = (vectors**2).sum(axis=1) - 2 * queries @ vectors.T
-        both = np.concatenate([best, distances], axis=1)
-        kept = np.argpartition(both, _NEAREST, axis=1)[:, : _NEAREST + 1]
-        both_rows = np.concatenate([rows, np.broadcast_to(first + np.arange(len(vectors)), distances.shape)], axis=1)
-        best, rows = np.take_along_axis(both, kept, 1), np.take_along_axis(both_rows, kept, 1)
-        first += len(vectors)
-    ranked = np.take_along_axis(rows, np.argsort(best, axis=1), 1)
-    places = np.unique(ranked[ranked >= 0]).tolist()
-    of = dict(zip(places, table.take(places, columns=["id"])["id"].to_pylist(), strict=True))
-    found = []
-    for name, row in zip(names, ranked.tolist(), strict=True):
-        others = [of[place] for place in row if place >= 0 and of[place] != name]
-        found.append(set(others[:_NEAREST]))
-    return found
 
 
 def stamp(path: str) -> tuple[int, int]:

@@ -34,11 +34,9 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 
 from . import _canonform, _vectors
-from ._arrays import Floats
-from ._index import AnyPath, Index, Labels, Meshes, SearchResults, _dataset, _label_file, in_files
+from ._index import AnyPath, Index, Labels, Meshes, SearchResults, dataset_of, in_files, label_file_of
 from ._methods import Embedding, Geodesic, options_of
-from ._reference import complete
-from ._settings import Call, Components, IndexDistance, Landmarks, Progress, Ranking, Weld, running, shown, whole, word
+from ._settings import Call, Components, Landmarks, Progress, Ranking, Weld, running, shown, whole, word
 from ._stored import Stored
 from ._surface import AnyMesh, Surface, surface_of
 from .errors import CanonformError, MeshError, NoSuchShapeError, OptionError, ShapeIndexError, TimeLimitError
@@ -46,32 +44,17 @@ from .errors import CanonformError, MeshError, NoSuchShapeError, OptionError, Sh
 if TYPE_CHECKING:
     from distributed import Client
 
-__all__ = ["batches_by_size", "build_index", "distance_matrix", "search", "vector_table"]
+__all__ = ["build_index", "search", "vector_table"]
 
 _BATCHES_PER_THREAD = 8
 _MOST_IN_BATCH = 256
 
 
-def batches_by_size(sizes: Sequence[int], n_batches: int, most: int = _MOST_IN_BATCH) -> list[list[int]]:
-    """Cut items into batches of about the same size, the largest items first.
+def _batches(sizes: Sequence[int], n_batches: int, most: int = _MOST_IN_BATCH) -> list[list[int]]:
+    """Cuts items into about so many batches of about the same size, positions in `sizes`.
 
-    Work on meshes is heavy-tailed: a batch of the largest that started last would keep one worker busy while the others wait.
-
-    Parameters
-    ----------
-    sizes
-        The size of each item.
-    n_batches
-        About how many batches; more if they would hold more than `most` items, fewer if there are fewer items.
-    most
-        Most items of a batch.
-
-    Returns
-    -------
-    list of lists of positions in `sizes`, those with the largest items first
-
-    >>> canonform.distributed.batches_by_size([5, 1, 1, 9], 2)
-    [[3], [0, 1, 2]]
+    Work on meshes is heavy-tailed: a batch of the largest that started last would keep one worker busy while the others wait, so those
+    come first.
     """
     target = max(sum(sizes) / max(n_batches, 1), 1)
     batches: list[list[int]] = []
@@ -114,24 +97,16 @@ def build_index(
     that is there already is not described again, so a run that was interrupted goes on where it stopped. A batch whose worker is lost
     moves to another worker; nothing else is repeated. If the index holds just these meshes already, there is nothing to do.
 
-    Parameters
-    ----------
-    meshes, labels, n_landmarks, n_points, size, method, geodesic, components, weld, seed, max_vertices, timeout, memory
-        As in `Index.build`.
-    client
-        A `distributed.Client`, of any cluster: local, over SSH, or of Slurm through dask-jobqueue.
-    out
-        The index. It is replaced.
-    n_batches
-        About how many batches. By default 8 for each thread of the cluster.
-    retries
-        How often a batch that raised an exception is tried again.
-    shards
-        The folder of the small indexes; by default `out` with the ending `.shards`. Workers must see it. Other files in it stay.
-    keep_shards
-        Whether to keep these indexes when all is done, so that the next run describes only batches that have changed.
-    progress
-        As in `Call`.
+    Args:
+        meshes, labels, n_landmarks, n_points, size, method, geodesic, components, weld, seed, max_vertices, timeout, memory: As in
+            `Index.build`.
+        client: A `distributed.Client`, of any cluster: local, over SSH, or of Slurm through dask-jobqueue.
+        out: The index. It is replaced.
+        n_batches: About how many batches. By default 8 for each thread of the cluster.
+        retries: How often a batch that raised an exception is tried again.
+        shards: The folder of the small indexes; by default `out` with the ending `.shards`. Workers must see it. Other files in it stay.
+        keep_shards: Whether to keep these indexes when all is done, so that the next run describes only batches that have changed.
+        progress: As in `Call`.
 
     Raises `MeshError` if there are no meshes, or none of them can be described.
 
@@ -151,12 +126,11 @@ def build_index(
         with (
             in_files(meshes, out, labels, keep=False) as files,
             TemporaryDirectory(prefix="canonform-", dir=place) as lists,
-            _label_file(files.labels) as given,
-            _dataset(files.paths, lists) as (dataset, name),
         ):
-            dataset, label_file = os.path.abspath(dataset), given
-            if given is not None and os.path.isfile(given):
-                label_file = shutil.copyfile(given, os.path.join(lists, "labels.csv"))
+            (dataset, name), label_file = dataset_of(files.paths, lists), label_file_of(files.labels, lists)
+            dataset = os.path.abspath(dataset)
+            if label_file is not None and os.path.isfile(label_file) and os.path.dirname(label_file) != lists:
+                label_file = shutil.copy(label_file, lists)
             unchanged = _canonform.Index.build(dataset, out, label_file, True, None, None, True, settings) if os.path.exists(out) else None
             if unchanged is not None:
                 index, known = Index(out), json.loads(unchanged)
@@ -165,24 +139,11 @@ def build_index(
             _dask()
             found = _canonform.list_folder(dataset, out, label_file)
             threads = sum(client.nthreads().values()) or 1
-            batches = batches_by_size([n_bytes for *_, n_bytes in found], n_batches or _BATCHES_PER_THREAD * threads)
-            # The largest batches run first.
-            tasks = [
-                client.submit(
-                    _describe,
-                    dataset,
-                    [found[item][:3] for item in batch],
-                    place,
-                    label_file,
-                    settings,
-                    key=f"canonform-{_hash(settings, dataset, [found[item] for item in batch])}",
-                    priority=-place_in_line,
-                    retries=retries,
-                    pure=False,
-                )
-                for place_in_line, batch in enumerate(batches)
-            ]
-            reports: list[tuple[str, dict[str, Any]]] = _gathered(client, tasks, [len(batch) for batch in batches], "shapes", {"progress": progress})
+            batches = _batches([n_bytes for *_, n_bytes in found], n_batches or _BATCHES_PER_THREAD * threads)
+            items = [(dataset, [found[item][:3] for item in batch], place, label_file, settings) for batch in batches]
+            reports: list[tuple[str, dict[str, Any]]] = _mapped(
+                client, _describe, items, {"progress": progress}, retries, stage="shapes", weights=[len(batch) for batch in batches]
+            )
         failed = sorted((failure for _, report in reports for failure in report["failed"]), key=lambda failure: str(failure["id"]))
         written = sorted({path for path, _ in reports if os.path.exists(path)})
         if not written:
@@ -201,66 +162,21 @@ def build_index(
             os.rmdir(place)
 
 
-def distance_matrix(
-    index: Index | AnyPath, client: Client, *, kind: IndexDistance = "combined", block: int = 64, retries: int = 3, **call: Unpack[Call]
-) -> tuple[list[str], Floats]:
-    """Distances between all pairs of shapes of an index, on the workers of a Dask client.
-
-    Parameters
-    ----------
-    index
-        An index, or its path. Workers must see the file.
-    kind
-        "combined" aligns the forms of every pair; "fused" compares signatures only.
-    block
-        Shapes in a block; a task measures the pairs of two blocks.
-
-    Returns
-    -------
-    names of the shapes, and an array of shape (number of shapes, number of shapes), equal to `Index.distances`
-
-    Raises `OptionError` if an option is not possible.
-
-    >>> names, matrix = canonform.distributed.distance_matrix("shapes.canonform", client)   # doctest: +SKIP
-    """
-    if kind not in ("combined", "fused"):
-        raise OptionError(f'kind="{kind}" is not possible: use "combined", "fused"')
-    if block < 1:
-        raise OptionError(f"block={block} is not possible: give a positive number")
-    index = index if isinstance(index, Index) else Index(index)
-    path, ids = os.path.abspath(index.path), list(index)
-    starts = range(0, len(ids), block)
-    # Half of the pairs: distances are symmetric.
-    places = [(row, column) for row in starts for column in starts if row <= column]
-    items = [(path, ids[row : row + block], None if row == column else ids[column : column + block], kind) for row, column in places]
-    blocks: list[Floats] = _mapped(client, _measure, items, call, retries, stage="blocks")
-    matrix = np.empty((len(ids), len(ids)))
-    for (row, column), measured in zip(places, blocks, strict=True):
-        matrix[column : column + block, row : row + block] = measured.T
-        matrix[row : row + block, column : column + block] = measured
-    return ids, matrix
-
-
 def vector_table(shards: Iterable[AnyPath], table: AnyPath, *, client: Client | None = None, **call: Unpack[Call]) -> dict[str, Any]:
-    """Collect the vectors of indexes in a Lance table, in which `search` finds the shapes nearest to a query.
+    """Collect the vectors of indexes in a Lance table, in which `search` finds the shapes nearest to a query. Returns facts about it.
+
+    These are `n_shapes`, `changed`: shapes that were written; `partitions`, `probes`: how many of them a search visits, 0 if it compares
+    all; `recall`: the share of the ten nearest vectors that searches find, on queries that did not decide about it.
 
     Call it again when indexes have changed: only their new and changed shapes are written, and searches that run meanwhile see the table
     before or after. Beyond 50,000 shapes their vectors are divided into partitions and coded in a byte for eight numbers (IVF_PQ), and
     searches in held-out queries decide how many partitions are visited.
 
-    Parameters
-    ----------
-    shards
-        Indexes made with the same options, such as the parts of `canonform index build --shard`. No two have a shape of the same name.
-    table
-        The folder of the table. Paths of indexes are kept as seen from its own folder, so that both can move.
-    client
-        A `distributed.Client` whose workers code the vectors. They must see the table under the same path.
-
-    Returns
-    -------
-    `n_shapes`, `changed`: shapes that were written; `partitions`, `probes`: how many of them a search visits, 0 if it compares all;
-    `recall`: the share of the ten nearest vectors that searches find, on queries that did not decide about it.
+    Args:
+        shards: Indexes made with the same options, such as the parts of `canonform index build --shard`. No two have a shape of the same
+            name.
+        table: The folder of the table. Paths of indexes are kept as seen from its own folder, so that both can move.
+        client: A `distributed.Client` whose workers code the vectors. They must see the table under the same path.
 
     Raises `OptionError`, `ShapeIndexError` if an index of the table is left out, or two have a shape of the same name.
 
@@ -341,29 +257,19 @@ def search(
     Candidates come from the table. Their forms are aligned by tasks that open the index of each, and the best of all are the results. A
     task whose worker is lost moves to another worker.
 
-    Parameters
-    ----------
-    table
-        A table of `vector_table`.
-    query
-        A surface, a mesh as `Surface` takes it, a mesh file, or the name of a shape. It is described by this process.
-    k, explain
-        As in `Index.search`.
-    rank
-        "plain", "part" or "forms", as in `Index.search`; the last two compare the query with every shape, where its index is.
-    client
-        A `distributed.Client` whose workers search. They must see the table, and the indexes under the same paths, and their meshes if
-        results are explained. By default this process searches.
-    exact
-        Compare the signatures of all shapes, where their indexes are. The results are then those of one index of all shapes.
-    where
-        The workers that see an index, by its path as in `vector_table`: addresses or names of hosts. By default all do.
-    retries
-        How often a task that raised an exception is tried again.
+    Args:
+        table: A table of `vector_table`.
+        query: A surface, a mesh as `Surface` takes it, a mesh file, or the name of a shape. It is described by this process.
+        k, explain: As in `Index.search`.
+        rank: "plain", "part" or "forms", as in `Index.search`; the last two compare the query with every shape, where its index is.
+        client: A `distributed.Client` whose workers search. They must see the table, and the indexes under the same paths, and their meshes
+            if results are explained. By default this process searches.
+        exact: Compare the signatures of all shapes, where their indexes are. The results are then those of one index of all shapes.
+        where: The workers that see an index, by its path as in `vector_table`: addresses or names of hosts. By default all do.
+        retries: How often a task that raised an exception is tried again.
 
-    Returns
-    -------
-    The results of `Index.search`; `report["recall"]` is the measured share of the ten nearest signatures that such a search finds.
+    Returns:
+        The results of `Index.search`; `report["recall"]` is the measured share of the ten nearest signatures that such a search finds.
 
     Raises `OptionError`, `NoSuchShapeError` if an option is not possible, or the query is neither a file nor a shape of the table.
 
@@ -436,11 +342,7 @@ class _Search:
     def near(self, packed: str, n: int) -> list[_vectors.Near]:
         """The shapes with the nearest vectors of the table."""
         row = _vectors.padded(self.table, np.array(json.loads(packed)["shape"]["fused"], np.float32))
-        if self.client is None or self.table.count_rows() <= _vectors.ALONE:
-            return _vectors.nearest(self.table, row, n, self.facts.probes)
-        pieces = [(piece, row, n, self.facts.probes) for piece in _vectors.pieces(self.table)]
-        lists = _mapped(self.client, _vectors.nearest_in, pieces, self.call, self.retries)
-        return sorted(near for some in lists for near in some)[:n]
+        return _vectors.nearest(self.table, row, n, self.facts.probes)
 
     def report(self, packed: str, k: int, rank: str, explain: bool) -> dict[str, Any]:
         """The report on a query, without its components."""
@@ -487,8 +389,9 @@ def _mapped(
     retries: int = 3,
     workers: Sequence[list[str] | None] = (),
     stage: str = "tasks",
+    weights: Sequence[int] = (),
 ) -> list[Any]:
-    """The results of a task for each of these arguments, on workers or here."""
+    """The results of a task for each of these arguments, the first of which begin first, on workers or here."""
     if client is None:
         return [task(*item) for item in items]
     limits = {name: value for name, value in call.items() if name in ("timeout", "memory")}
@@ -497,12 +400,12 @@ def _mapped(
         client.submit(_within, limits, task, *item, workers=place, pure=False, retries=retries)
         for item, place in zip(items, at, strict=True)
     ]
-    return _gathered(client, tasks, [1] * len(tasks), stage, call)
+    return _gathered(client, tasks, weights or [1] * len(tasks), stage, call)
 
 
 def _within(limits: Call, task: Callable[..., Any], *arguments: Any) -> Any:
-    """Runs a task under the limits of the call that it is for, on a worker."""
-    with running(limits):
+    """Runs a task under the limits of the call that it is for, on the threads that Dask gave the worker."""
+    with running({**limits, "threads": _dask().get_worker().state.nthreads}):
         return task(*arguments)
 
 
@@ -529,7 +432,6 @@ def _describe(
     dataset: str, shapes: list[tuple[str, str, str]], place: str, label_file: str | None, settings: dict[str, Any]
 ) -> tuple[str, dict[str, Any]]:
     """Makes the index of a batch, on a worker. Returns its path and report."""
-    _use_threads_of_worker()
     contents = _canonform.content_hashes([path for _, _, path in shapes])
     name = _hash(settings, [(*shape, content) for shape, content in zip(shapes, contents, strict=True)])
     path = os.path.join(place, f"{name}.canonform")
@@ -537,19 +439,6 @@ def _describe(
     names = {name for name, _, _ in shapes}
     report = _canonform.Index.build(dataset, path, label_file, False, None, names, False, settings)
     return path, json.loads(report)
-
-
-def _measure(path: str, rows: list[str], columns: list[str] | None, kind: str) -> Floats:
-    """Measures the distances between two blocks of shapes, on a worker."""
-    _use_threads_of_worker()
-    return _canonform.Index.open(path).distances(rows, columns, kind)
-
-
-def _use_threads_of_worker() -> None:
-    """Not more threads than Dask gave the worker. The tasks of one worker share them."""
-    threads = _dask().get_worker().state.nthreads
-    if _canonform.threads() != threads:
-        _canonform.set_threads(threads)
 
 
 def _hash(*parts: Any) -> str:
@@ -574,6 +463,3 @@ def _gathered(client: Client, tasks: list[Any], weights: Iterable[int], stage: s
             raise TimeLimitError(f"not finished within the time limit of {timeout:g} seconds; raise timeout=") from fault
         raise
     return [results[task.key] for task in tasks]
-
-
-complete([batches_by_size, build_index, distance_matrix, search, vector_table])
