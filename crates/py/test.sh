@@ -53,7 +53,7 @@ if [ "${1:-}" = --reference ]; then
     exec "$environment/bin/python" -W ignore -c '
 import sys, pathlib, canonform, pdoc
 canonform.NystromMDS, canonform.distributed
-pdoc.render.configure(docformat="numpy")
+pdoc.render.configure(docformat="google")
 pdoc.pdoc("canonform", output_directory=pathlib.Path(sys.argv[1]))' "$target/reference"
 fi
 exec "$environment/bin/python" -m pytest --numprocesses 2 --dist loadfile "$@"

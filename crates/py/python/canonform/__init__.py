@@ -39,7 +39,6 @@ from ._look import Look, figure
 from ._match import MappedPoints, Match, SurfaceMap, match
 from ._methods import FastMarching, KernelPca, Landmark, Nystrom, Smacof, Spectral
 from ._operators import ClosestPoints, EdgePoint, Eigenbasis, FacePoint
-from ._reference import complete as _complete
 from ._settings import Call, Shown, set_threads
 from ._surface import Path, RepairedMesh, RepairReport, Surface, distance_methods, embedding_methods, read, signature_kinds
 from ._view import SurfaceView
@@ -71,6 +70,3 @@ def __getattr__(name: str) -> _Any:
 
         return import_module(".distributed", __name__)
     raise AttributeError(f"module 'canonform' has no attribute {name!r}")
-
-
-_complete([Surface, Index, *(globals()[name] for name in __all__ if name in globals()), *(getattr(datasets, name) for name in datasets.__all__)])

@@ -23,16 +23,11 @@ from .errors import OptionError
 class Alignment(ByValue):
     """The rigid motion that takes one form onto another: `points @ rotation.T + translation`.
 
-    Attributes
-    ----------
-    rotation
-        An orthogonal matrix, shape (3, 3); its determinant is -1 if the motion includes a reflection.
-    translation
-        In mesh units, shape (3,).
-    reflected
-        Whether the motion includes a reflection.
-    rms
-        Root mean square distance between nearest points of the aligned forms, in mesh units.
+    Attributes:
+        rotation: An orthogonal matrix, shape (3, 3); its determinant is -1 if the motion includes a reflection.
+        translation: In mesh units, shape (3,).
+        reflected: Whether the motion includes a reflection.
+        rms: Root mean square distance between nearest points of the aligned forms, in mesh units.
 
     >>> a, b = (surface.canonical_form(50) for surface in (cat, other))
     >>> alignment = canonform.align(a, b)
@@ -46,17 +41,9 @@ class Alignment(ByValue):
     rms: float
 
     def apply(self, points: ArrayLike) -> Floats:
-        """Moves points, shape (k, 3).
-
-        Parameters
-        ----------
-        points
-            Shape (k, 3).
+        """Moves `points`, shape (k, 3).
 
         Raises `OptionError` if they are not points.
-
-        >>> canonform.align(cat, other).apply([[0, 0, 0]]).shape
-        (1, 3)
         """
         return numeric("points", points, ("k", 3)) @ self.rotation.T + self.translation
 
@@ -70,12 +57,9 @@ def align(a: Form | AnyMesh, b: Form | AnyMesh, *, reflections: bool = True, **c
 
     A surface, or a mesh as `compare` takes it, stands for its canonical form with default options. `compare` uses forms at equal size instead.
 
-    Parameters
-    ----------
-    a, b
-        Forms, surfaces, mesh files, or meshes in memory.
-    reflections
-        Whether the motion may include a reflection.
+    Args:
+        a, b: Forms, surfaces, mesh files, or meshes in memory.
+        reflections: Whether the motion may include a reflection.
 
     Raises `EmbeddingError` if a form is not three-dimensional.
 
@@ -90,12 +74,9 @@ def align(a: Form | AnyMesh, b: Form | AnyMesh, *, reflections: bool = True, **c
 class Comparison(Stored):
     """How two shapes resemble each other.
 
-    Attributes
-    ----------
-    report
-        The object that `canonform compare --json` prints.
-    residuals
-        For each vertex of the first mesh, the distance of its form from that of the second, in mesh units; shape (n,).
+    Attributes:
+        report: The object that `canonform compare --json` prints.
+        residuals: For each vertex of the first mesh, the distance of its form from that of the second, in mesh units; shape (n,).
 
     >>> found = canonform.compare(cat, other)
     >>> found.match, found.confidence > 0.5
@@ -175,14 +156,10 @@ def compare(
 
     A surface is described once, and keeps that.
 
-    Parameters
-    ----------
-    names
-        What the two are called in words; by default their file names.
-    a, b
-        Surfaces, mesh files, or meshes in memory as `Surface` takes them.
-
-    The relation does not depend on the other options, which are those of `Surface.canonical_form`.
+    Args:
+        names: What the two are called in words; by default their file names.
+        a, b: Surfaces, mesh files, or meshes in memory as `Surface` takes them.
+        n_landmarks, method, geodesic, seed: As in `Surface.canonical_form`; the relation does not depend on them.
 
     Raises `OptionError`, `MeshError` if an option is not possible, or a mesh cannot be used.
 

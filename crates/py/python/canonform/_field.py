@@ -21,16 +21,11 @@ from .errors import PointError
 class PairDistance:
     """The distance of two vertices, with bounds, in mesh units.
 
-    Attributes
-    ----------
-    distance
-        The estimate, between the bounds.
-    lower
-        The distance is not below this.
-    upper
-        The distance is not above this.
-    exact
-        Whether the distance is exact instead of an estimate.
+    Attributes:
+        distance: The estimate, between the bounds.
+        lower: The distance is not below this.
+        upper: The distance is not above this.
+        exact: Whether the distance is exact instead of an estimate.
 
     >>> pair = cat.distance_field(20, geodesic="exact").pair(3, 500)
     >>> pair.lower <= pair.distance <= pair.upper
@@ -49,16 +44,11 @@ class PairDistances(AsArray, ByValue):
 
     `numpy.asarray(distances)` gives the distances.
 
-    Attributes
-    ----------
-    distance
-        The estimates, between the bounds; NaN if the repair dropped one of the vertices, and so are the bounds.
-    lower
-        No distance is below these.
-    upper
-        No distance is above these.
-    exact
-        Which distances are exact instead of estimates.
+    Attributes:
+        distance: The estimates, between the bounds; NaN if the repair dropped one of the vertices, and so are the bounds.
+        lower: No distance is below these.
+        upper: No distance is above these.
+        exact: Which distances are exact instead of estimates.
 
     >>> cat.distance_field(20).pairs([[0, 5], [3, 500]], tolerance=0)
     PairDistances(2 pairs, 2 exact)
@@ -102,7 +92,7 @@ class DistanceField(Constant):
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> DistanceField:
-        """Read a field from a file.
+        """Read a field from the file `path`.
 
         Raises `MissingFileError`, `FileError` if the file cannot be read, or is no field.
 
@@ -113,11 +103,9 @@ class DistanceField(Constant):
         return cls(_canonform.DistanceField.open(os.fspath(path)))
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the field to a file.
+        """Write the field to the file `path`.
 
         Raises `FileError` if the file cannot be written.
-
-        >>> cat.distance_field(20).save("cat.field")
         """
         self._inner.save(os.fspath(path))
 
@@ -142,17 +130,9 @@ class DistanceField(Constant):
         return bool(self.facts["bounds"]["kind"] == "certified")
 
     def pair(self, a: int, b: int) -> PairDistance:
-        """The distance of two vertices, estimated.
-
-        Parameters
-        ----------
-        a, b
-            Vertex numbers.
+        """The distance of two vertices, `a` and `b`, estimated.
 
         Raises `PointError` if the mesh has no such vertex.
-
-        >>> cat.distance_field(20).pair(3, 3).distance
-        0.0
         """
         found = self.pairs([[a, b]], tolerance=None)
         return PairDistance(*(values[0].item() for values in (found.distance, found.lower, found.upper, found.exact)))
@@ -162,41 +142,27 @@ class DistanceField(Constant):
     ) -> PairDistances:
         """The distances of many pairs of vertices, in parallel.
 
-        Parameters
-        ----------
-        pairs
-            Vertex numbers, shape (k, 2).
-        tolerance
-            Pairs whose bounds are farther apart than this share of the distance are finished by exact propagation on the surface. None
-            finishes no pair.
+        Args:
+            pairs: Vertex numbers, shape (k, 2).
+            tolerance: Pairs whose bounds are farther apart than this share of the distance are finished by exact propagation on the
+                surface. None finishes no pair.
 
         Raises `PointError` if the mesh has no such vertex, or they are not pairs of vertices.
-
-        >>> cat.distance_field(20).pairs([[0, 5], [3, 500]]).distance.shape
-        (2,)
         """
         array: Ints = numeric("pairs", pairs, ("k", 2), np.int64, PointError) if np.size(pairs) else np.empty((0, 2), dtype=np.int64)
         with running(call):
             return PairDistances(*self._inner.pairs(array, _share(tolerance)))
 
     def row(self, source: int, *, tolerance: float | None = 0.05, **call: Unpack[Call]) -> PairDistances:
-        """The distances from one vertex to all, in the order of the input; `tolerance` as in `pairs`.
-
-        Parameters
-        ----------
-        source
-            A vertex.
+        """The distances from one vertex, `source`, to all, in the order of the input; `tolerance` as in `pairs`.
 
         Raises `PointError` if the mesh has no such vertex.
-
-        >>> len(cat.distance_field(20).row(0))
-        1000
         """
         with running(call):
             return PairDistances(*self._inner.row(source, _share(tolerance)))
 
     def nearest(self, source: int, k: int, **call: Unpack[Call]) -> tuple[Ints, Floats]:
-        """The `k` vertices nearest to one of them along the surface, itself left out, and their exact distances, nearest first.
+        """The `k` vertices nearest to the vertex `source` along the surface, itself left out, and their exact distances, nearest first.
 
         Raises `PointError` if the mesh has no such vertex.
 

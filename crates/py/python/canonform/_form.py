@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeVar, Unpack
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,14 +19,6 @@ from ._stored import AsArray, Constant
 
 if TYPE_CHECKING:
     from ._surface import Point, Surface
-
-
-_T = TypeVar("_T")
-
-
-def _interval(bounds: list[float]) -> tuple[float, float]:
-    low, high = bounds
-    return low, high
 
 
 class Form(AsArray, Constant):
@@ -111,12 +103,12 @@ class Form(AsArray, Constant):
         It grows with the mesh: compare forms by `normalized_stress`. An estimate, unless all pairs were measured, so see
         `stress_interval`.
         """
-        return self._stress("value", float)
+        return self._stress("value")
 
     @property
     def stress_interval(self) -> tuple[float, float] | None:
         """A 95 % confidence interval of `stress`; its value twice if all pairs were measured."""
-        return self._stress("interval", _interval)
+        return self._stress("interval")
 
     @property
     def normalized_stress(self) -> float | None:
@@ -125,23 +117,22 @@ class Form(AsArray, Constant):
         An estimate, unless all pairs were measured, so see `normalized_stress_interval`. The argument `stress` of
         `Surface.canonical_form` says which distances it is from.
         """
-        return self._stress("normalized", float)
+        return self._stress("normalized")
 
     @property
     def normalized_stress_interval(self) -> tuple[float, float] | None:
         """A 95 % confidence interval of `normalized_stress`; its value twice if all pairs were measured."""
-        return self._stress("normalized_interval", _interval)
+        return self._stress("normalized_interval")
 
-    def _stress(self, key: str, of: Callable[[Any], _T]) -> _T | None:
-        stress = self.report["stress"]
-        return None if stress is None else of(stress[key])
+    def _stress(self, key: str) -> Any:
+        found = (self.report["stress"] or {}).get(key)
+        return tuple(found) if isinstance(found, list) else found
 
     def _stress_in_words(self, key: str, interval: str) -> str:
-        value, bounds = self._stress(key, float), self._stress(interval, _interval)
-        if value is None or bounds is None:
+        if self.report["stress"] is None:
             return "not measured"
-        low, high = bounds
-        return f"{value:.4g}" + (f" ({low:.4g} to {high:.4g}, estimated)" if low < high else "")
+        low, high = self._stress(interval)
+        return f"{self._stress(key):.4g}" + (f" ({low:.4g} to {high:.4g}, estimated)" if low < high else "")
 
     @cached_property
     def eigenvalues(self) -> Floats:
@@ -159,12 +150,9 @@ class Form(AsArray, Constant):
         return self._inner.distances().view(SourceRows)
 
     def place(self, points: Point | Iterable[Point], **call: Unpack[Call]) -> Floats:
-        """Coordinates of points of the surface, shape (number of points, n_components), in mesh units. Needs method="nmds".
+        """Coordinates of `points` of the surface, as in `Surface.distances`: shape (number of points, n_components), in mesh units.
 
-        Parameters
-        ----------
-        points
-            Points as in `Surface.distances`.
+        Needs method="nmds".
 
         Raises `OptionError`, `PointError` if the form has no such extension, or the mesh no such point.
 
@@ -178,19 +166,12 @@ class Form(AsArray, Constant):
             return self._inner.place(_several(points, len(self)))
 
     def finer(self, surface: Surface, *, stress: StressChoice = "auto", seed: int = 0, **call: Unpack[Call]) -> Form:
-        """A finer mesh of the same surface in the coordinates of this form, placed by the distances from its landmarks.
+        """A finer mesh of the same `surface` in the coordinates of this form, placed by the distances from its landmarks.
 
-        The meshes are in the same place: each landmark is the nearest vertex of the finer mesh. Needs method="nmds".
-
-        Parameters
-        ----------
-        surface
-            The finer mesh.
+        The meshes are in the same place: each landmark is the nearest vertex of the finer mesh. Needs method="nmds". `stress` and
+        `seed` are those of `Surface.canonical_form`.
 
         Raises `OptionError` if the form has no such extension, or the meshes are not in the same place.
-
-        >>> cat.canonical_form(50).finer(cat, stress="skip").points.shape
-        (1000, 3)
         """
         settings = {"stress": stress, "seed": seed}
         with running(call):
@@ -198,11 +179,9 @@ class Form(AsArray, Constant):
         return Form(inner, surface, settings, self._name, self)
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        """Write the form as a mesh; the extension tells the format. Vertices that the repair dropped are left out.
+        """Write the form as a mesh to the file `path`; the extension tells the format. Vertices that the repair dropped are left out.
 
         Raises `FileError`, `EmbeddingError` if the file cannot be written, or the form has not three dimensions.
-
-        >>> cat.canonical_form(50).write("form.ply")
         """
         self._inner.write(os.fspath(path))
 

@@ -31,37 +31,22 @@ _LARGEST = 8192
 class Look(TypedDict, total=False):
     """Keywords of pictures.
 
-    Attributes
-    ----------
-    width, height
-        In pixels, 600 by default.
-    view
-        Where the viewer stands: "front", "right", "back", "left", "top", "bottom", "principal" along the principal axes, or how far
-        around and how far up, in degrees; by default (30, 12).
-    up
-        The axis that points up: "x", "y" or "z", the default.
-    colormap
-        Colors of values: "viridis", "magma", "inferno", "cividis", "turbo", "coolwarm" or "gray".
-    range
-        The values of the first and the last color; by default the least and the greatest.
-    bar
-        The name of the values beside a bar of their colors; by default no bar. True for a bar without a name.
-    isolines
-        Number of steps of the range that lines of equal value separate.
-    colors
-        A color for each vertex instead of values: shape (n, 3), from 0 to 255, or from 0 to 1 if they are fractions.
-    edges
-        Whether edges are drawn.
-    thickness
-        Of paths and points, as a share of the usual.
-    paths
-        Paths of `Surface.path`, or arrays of points of shape (k, 3), drawn as red lines; or pairs of one and a color.
-    points
-        Points drawn as blue dots: vertices, points of edges and faces, or places of shape (k, 3).
-    labels
-        Texts by points, such as {0: "nose"}: they are written beside these, none over another.
-    background
-        A color such as "#ffffff", by default none.
+    Attributes:
+        width, height: In pixels, 600 by default.
+        view: Where the viewer stands: "front", "right", "back", "left", "top", "bottom", "principal" along the principal axes, or how far
+            around and how far up, in degrees; by default (30, 12).
+        up: The axis that points up: "x", "y" or "z", the default.
+        colormap: Colors of values: "viridis", "magma", "inferno", "cividis", "turbo", "coolwarm" or "gray".
+        range: The values of the first and the last color; by default the least and the greatest.
+        bar: The name of the values beside a bar of their colors; by default no bar. True for a bar without a name.
+        isolines: Number of steps of the range that lines of equal value separate.
+        colors: A color for each vertex instead of values: shape (n, 3), from 0 to 255, or from 0 to 1 if they are fractions.
+        edges: Whether edges are drawn.
+        thickness: Of paths and points, as a share of the usual.
+        paths: Paths of `Surface.path`, or arrays of points of shape (k, 3), drawn as red lines; or pairs of one and a color.
+        points: Points drawn as blue dots: vertices, points of edges and faces, or places of shape (k, 3).
+        labels: Texts by points, such as {0: "nose"}: they are written beside these, none over another.
+        background: A color such as "#ffffff", by default none.
 
     >>> look = canonform.Look(view="left", width=80, bar="distance", labels={0: "source"})
     >>> cat.picture(cat.distances(0), **look)[1:4]
@@ -124,28 +109,16 @@ def figure(
     height: int = 900,
     background: str = "#ffffff",
 ) -> bytes:
-    """One picture of several: in rows, or at places.
+    """One picture of several: in rows, or at places. The bytes of a PNG file.
 
-    Parameters
-    ----------
-    pictures
-        PNG files, such as `Surface.picture` makes them.
-    titles
-        What is written under each of them; in a small type if it is long.
-    n_columns
-        Pictures in a row; by default all, but no more than four.
-    at
-        Where the middle of each picture is instead, to the right and up: shape (number of pictures, 2), such as an embedding of a matrix
-        of distances. Both axes have one scale, and pictures that would be one over the other move apart if there is room.
-    width, height
-        With `at`, the size in pixels.
-    background
-        A color such as "#ffffff".
-
-    Returns
-    -------
-    bytes
-        A PNG file.
+    Args:
+        pictures: PNG files, such as `Surface.picture` makes them.
+        titles: What is written under each of them; in a small type if it is long.
+        n_columns: Pictures in a row; by default all, but no more than four.
+        at: Where the middle of each picture is instead, to the right and up: shape (number of pictures, 2), such as an embedding of a
+            matrix of distances. Both axes have one scale, and pictures that would be one over the other move apart if there is room.
+        width, height: With `at`, the size in pixels.
+        background: A color such as "#ffffff".
 
     Raises `OptionError` if there are no pictures, or not as many titles or places.
 

@@ -36,14 +36,10 @@ _DOUBTFUL = 0.5
 class MappedPoints(ByValue):
     """Points inside the faces of a surface that a map takes vertices or faces of another surface to.
 
-    Attributes
-    ----------
-    faces
-        The face that each lies in, or -1 if the repair dropped the vertex: shape (n,). `valid` is the mask of the others.
-    corners
-        The vertices of that face: shape (n, 3).
-    weights
-        The weights of these vertices, with sum 1; NaN for dropped vertices: shape (n, 3).
+    Attributes:
+        faces: The face that each lies in, or -1 if the repair dropped the vertex: shape (n,). `valid` is the mask of the others.
+        corners: The vertices of that face: shape (n, 3).
+        weights: The weights of these vertices, with sum 1; NaN for dropped vertices: shape (n, 3).
 
     >>> points = found.best.points()
     >>> points.interpolate(other.vertices).shape
@@ -66,17 +62,9 @@ class MappedPoints(ByValue):
         return [None if face < 0 else FacePoint(face, (u, v, w)) for face, (u, v, w) in pairs]
 
     def interpolate(self, values: ArrayLike) -> Floats:
-        """Values at the vertices of that surface, shape (m,) or (m, d), at the points; NaN for dropped vertices.
-
-        Parameters
-        ----------
-        values
-            Shape (m,) or (m, d).
+        """The `values` of the vertices of that surface, shape (m,) or (m, d), at the points; NaN for dropped vertices.
 
         Raises `OptionError` if there is not one row for each vertex.
-
-        >>> found.best.points().interpolate(other.distances(0)).shape
-        (1000,)
         """
         sides = ("m",) if np.ndim(values) == 1 else ("m", "d")
         array = numeric("values", values, sides)
@@ -96,24 +84,15 @@ class MappedPoints(ByValue):
 class SurfaceMap(Stored):
     """A map from the vertices of one surface, `a`, to another, `b`.
 
-    Attributes
-    ----------
-    vertices
-        For each vertex of `a`, its partner on `b`, or -1 if the repair dropped the vertex, or the part `b` lacks it; shape (n,).
-    vertex_confidence
-        How well the map keeps distances around each vertex of `a`, from 0 to 1; shape (n,).
-    kind
-        "direct" if the map keeps the orientation, "mirrored" if it reverses it, "unoriented" if a surface has none.
-    distortion
-        The mean change of distances, as a share of the square root of the area.
-    agreement
-        How far the map keeps the orientation, from -1 to 1; `None` if a surface cannot be oriented.
-    confidence
-        How likely this map is the right one of its kind, and not the next best; below 0.7 it is uncertain.
-    alternative
-        The next best map of this kind, unless the confidence is 0.9 or more: front and back may be exchanged.
-    part
-        "first" or "second", the surface that is a part of the other; `None` if both are mapped as wholes.
+    Attributes:
+        vertices: For each vertex of `a`, its partner on `b`, or -1 if the repair dropped the vertex, or the part `b` lacks it; shape (n,).
+        vertex_confidence: How well the map keeps distances around each vertex of `a`, from 0 to 1; shape (n,).
+        kind: "direct" if the map keeps the orientation, "mirrored" if it reverses it, "unoriented" if a surface has none.
+        distortion: The mean change of distances, as a share of the square root of the area.
+        agreement: How far the map keeps the orientation, from -1 to 1; `None` if a surface cannot be oriented.
+        confidence: How likely this map is the right one of its kind, and not the next best; below 0.7 it is uncertain.
+        alternative: The next best map of this kind, unless the confidence is 0.9 or more: front and back may be exchanged.
+        part: "first" or "second", the surface that is a part of the other; `None` if both are mapped as wholes.
 
     >>> found.best.vertices.shape, found.best.kind in ("direct", "mirrored")
     ((1000,), True)
@@ -150,17 +129,10 @@ class SurfaceMap(Stored):
         self, n_eigenfunctions: int | None = None, *, bases: tuple[Eigenbasis, Eigenbasis] | None = None
     ) -> Floats:
         """The map of functions, a square matrix, smaller for a part: column j has the coefficients of the j-th eigenfunction of `b`,
-        pulled back to `a`, in the eigenfunctions of `a`. The method `bases` gives these; by default all that the map has.
-
-        Parameters
-        ----------
-        bases
-            Bases of `a` and `b` to write it in.
+        pulled back to `a`, in the eigenfunctions of `a`. The method `bases` gives these, by default all; `n_eigenfunctions` is how many.
+        With `bases=` it is written in these of `a` and `b`.
 
         Raises `OptionError` if the map has fewer eigenfunctions.
-
-        >>> found.best.functional(20).shape
-        (20, 20)
         """
         if bases is not None:
             a, b = bases
@@ -170,13 +142,9 @@ class SurfaceMap(Stored):
         return self._functional[:rows, :columns].copy()
 
     def bases(self, n_eigenfunctions: int | None = None, **call: Unpack[Call]) -> tuple[Eigenbasis, Eigenbasis]:
-        """The eigenfunctions of `a` and of `b` that `functional` is written in, of both surfaces scaled to unit area.
+        """The `n_eigenfunctions` of `a` and of `b` that `functional` is written in, of both surfaces scaled to unit area.
 
         Raises `OptionError` if the map has fewer eigenfunctions.
-
-        >>> a, b = found.best.bases(20)
-        >>> len(a), len(b)
-        (20, 20)
         """
         counts = self._counts(n_eigenfunctions)
         with running(call):
@@ -196,19 +164,7 @@ class SurfaceMap(Stored):
         return min(k, rows), min(k, columns)
 
     def points(self, of: Side = "a", **call: Unpack[Call]) -> MappedPoints:
-        """The points inside faces of `b` that the vertices of `a` are mapped to; with `of="b"`, the points of `a` that are mapped to
-        the vertices of `b`.
-
-        Parameters
-        ----------
-        of
-            "a" or "b".
-
-        Raises `OptionError` if `of` is neither.
-
-        >>> found.best.points("b")
-        MappedPoints(1000 points)
-        """
+        """Where the vertices of the surface `of`, "a" or "b", are mapped to: points inside faces of the other."""
         with running(call):
             return self._mapped(_side("of", of), "vertices")
 
@@ -235,21 +191,13 @@ class SurfaceMap(Stored):
     def transfer(self, values: ArrayLike, to: Side = "b", **call: Unpack[Call]) -> NDArray[Any]:
         """Carry values from one surface to the other: from `a` to `b`, or back with `to="a"`.
 
-        Parameters
-        ----------
-        values
-            One row for each vertex of the surface that they come from, or one for each of its faces, or values at the corners of
-            the faces: shape (n_faces, 3, d). Fractional numbers at vertices are interpolated inside faces. Texture coordinates
-            belong to corners: no face takes them from both sides of a seam. Everything else is a label, such as the number or name
-            of a segment: the label of the largest weight, or that of the face.
-        to
-            The surface that they go to.
-
-        Returns
-        -------
-        ndarray
-            One row for each vertex or face of that surface, or values at its corners. Of those that the repair dropped, numbers are NaN or
-            -1, and other labels are empty.
+        Args:
+            values: One row for each vertex of the surface that they come from, or one for each of its faces, or values at the corners of
+                the faces: shape (n_faces, 3, d). Fractional numbers at vertices are interpolated inside faces. Texture coordinates belong
+                to corners: no face takes them from both sides of a seam. Everything else is a label, such as the number or name of a
+                segment: the label of the largest weight, or that of the face.
+            to: The surface that they go to. The result has a row for each of its vertices or faces, or values at its corners. Of those
+                that the repair dropped, numbers are NaN or -1, and other labels are empty.
 
         Raises `OptionError` if there is not one row for each vertex or face.
 
@@ -297,17 +245,9 @@ class SurfaceMap(Stored):
 
     def then(self, next: SurfaceMap) -> SurfaceMap:
         """This map from `a` to `b`, followed by one from `b` to `c`. Its confidence is the product of both; its distortion is at most
-        their sum, which stands for it.
-
-        Parameters
-        ----------
-        next
-            A map that begins on `b`.
+        their sum, which stands for it. `next` begins on `b`.
 
         Raises `OptionError` if the maps do not share a surface, or one is of a part.
-
-        >>> found.best.then(found.best.inverse()).vertices.shape
-        (1000,)
         """
         middle, start = self._shapes[1], next._shapes[0]
         if middle.n_vertices != start.n_vertices:
@@ -374,12 +314,9 @@ def _labels(labels: NDArray[Any], rows: Ints, missing: NDArray[np.bool_]) -> NDA
 class Match(Stored):
     """The maps from one surface to another: the direct one first, unless it distorts distances clearly more.
 
-    Attributes
-    ----------
-    maps
-        At most two maps, of different kinds.
-    seconds
-        The time of the search, after both surfaces were prepared.
+    Attributes:
+        maps: At most two maps, of different kinds.
+        seconds: The time of the search, after both surfaces were prepared.
 
     >>> found.best is found.maps[0]
     True
@@ -416,14 +353,10 @@ class Match(Stored):
     def picture(self, kind: MapKind | None = None, *, n_lines: int = 0, **look: Unpack[Look]) -> bytes:
         """A PNG file of both surfaces side by side, in the colors that a map carries from the first to the second.
 
-        Parameters
-        ----------
-        kind
-            The kind of the map, by default that of `best`.
-        n_lines
-            How many vertices, spread evenly, are joined to their partners by lines.
-        look
-            Other keywords of `Look`; the picture is twice as wide as high by default.
+        Args:
+            kind: The kind of the map, by default that of `best`.
+            n_lines: How many vertices, spread evenly, are joined to their partners by lines.
+            look: Other keywords of `Look`; the picture is twice as wide as high by default.
 
         Raises `OptionError` if there is no map of this kind.
 
@@ -474,22 +407,17 @@ def match(
     Shapes that are alike under a mirror, as animals are, have two maps: the direct one takes the left side to the left side, the
     mirrored one to the right side. Both are found. Each surface is prepared once, and kept.
 
-    Parameters
-    ----------
-    landmarks
-        Known pairs: rows of a vertex of `a` and one of `b`. They choose the map, which contains
-        them; contradictory ones are refused. One ear is enough to tell left from right.
-    initial
-        A map to start from: for each vertex of `a`, its partner on `b`, or -1; or a functional map, as `SurfaceMap.functional`
-        writes it, and the bases of `a` and `b` that it is written in. It is refined, and comes out unless another map is clearly
-        better.
-    refine
-        With `False`, the initial map comes out as it is, with its distortion and its confidence beside the best map that is found.
-    descriptors
-        Functions that correspond, beside those that are computed: an array for each surface, one row for each vertex and one
-        column for each function.
-    n_eigenfunctions
-        Most eigenfunctions of each surface that the map is refined with, 150 by default.
+    Args:
+        landmarks: Known pairs: rows of a vertex of `a` and one of `b`. They choose the map, which contains them; contradictory ones are
+            refused. One ear is enough to tell left from right.
+        initial: A map to start from: for each vertex of `a`, its partner on `b`, or -1; or a functional map, as `SurfaceMap.functional`
+            writes it, and the bases of `a` and `b` that it is written in. It is refined, and comes out unless another map is clearly
+            better.
+        refine: With `False`, the initial map comes out as it is, with its distortion and its confidence beside the best map that is found.
+        descriptors: Functions that correspond, beside those that are computed: an array for each surface, one row for each vertex and one
+            column for each function.
+        n_eigenfunctions: Most eigenfunctions of each surface that the map is refined with, 150 by default.
+        geodesic: As in `Surface.distances`.
 
     Raises `OptionError` if an option is not possible, or landmarks contradict each other.
 

@@ -31,12 +31,9 @@ class Options:
 class FastMarching(Options):
     """`geodesic="fast-marching"` with options.
 
-    Attributes
-    ----------
-    update
-        The local solver: "virtual-source" or "planar".
-    obtuse
-        What happens to angles wider than 90 degrees: "flip", "unfold" or "ignore".
+    Attributes:
+        update: The local solver: "virtual-source" or "planar".
+        obtuse: What happens to angles wider than 90 degrees: "flip", "unfold" or "ignore".
 
     >>> distances = cat.distances(0, geodesic=canonform.FastMarching(obtuse="ignore"))
     >>> bool(abs(distances - cat.distances(0, geodesic="exact")).max() < 0.02 * distances.max())
@@ -69,20 +66,14 @@ class _Regularized(_Sampled):
 class Nystrom(_Regularized):
     """`method="nmds"` with options: Nystrom multidimensional scaling, the default.
 
-    Attributes
-    ----------
-    regularization
-        How the matrix of the landmarks is inverted: "low-rank" keeps `rank` eigenvalues, "cur" as many columns, "rpi" damps small
-        eigenvalues by `alpha`, and "none" keeps all.
-    rank
-        Of "low-rank" and "cur"; by default half the landmarks, at least `n_components` + 4.
-    alpha
-        Of "rpi": alpha over the fourth power of the largest eigenvalue, by default 1e-10, or "paper" for the third power of that
-        eigenvalue, which depends on the unit of length.
-    sampling
-        How landmarks are chosen: "farthest", each the farthest from those before it; "random", "min-variance" or "max-variance".
-    first
-        The first landmark, a vertex. By default the one farthest from vertex 0; with other samplings it is drawn with the seed.
+    Attributes:
+        regularization: How the matrix of the landmarks is inverted: "low-rank" keeps `rank` eigenvalues, "cur" as many columns, "rpi" damps
+            small eigenvalues by `alpha`, and "none" keeps all.
+        rank: Of "low-rank" and "cur"; by default half the landmarks, at least `n_components` + 4.
+        alpha: Of "rpi": alpha over the fourth power of the largest eigenvalue, by default 1e-10, or "paper" for the third power of that
+            eigenvalue, which depends on the unit of length.
+        sampling: How landmarks are chosen: "farthest", each the farthest from those before it; "random", "min-variance" or "max-variance".
+        first: The first landmark, a vertex. By default the one farthest from vertex 0; with other samplings it is drawn with the seed.
 
     >>> cat.canonical_form(40, method=canonform.Nystrom(rank=9)).report["rank"]
     9
@@ -95,10 +86,8 @@ class Nystrom(_Regularized):
 class Landmark(_Sampled):
     """`method="landmark"` with options: landmarks by classical scaling, all others by their distances to them.
 
-    Attributes
-    ----------
-    sampling, first
-        How landmarks are chosen, see `Nystrom`.
+    Attributes:
+        sampling, first: How landmarks are chosen, see `Nystrom`.
 
     >>> cat.canonical_form(40, method=canonform.Landmark(sampling="random"), seed=1).report["method"]
     'landmark'
@@ -111,14 +100,10 @@ class Landmark(_Sampled):
 class Spectral(_Sampled):
     """`method="spectral"` with options: distances between landmarks, smooth in eigenfunctions of the surface.
 
-    Attributes
-    ----------
-    n_eigenfunctions
-        Number of eigenfunctions of the Laplacian.
-    mu
-        Weight of the distances against smoothness, for a surface of unit area; `math.inf` fits the distances exactly.
-    sampling, first
-        How landmarks are chosen, see `Nystrom`.
+    Attributes:
+        n_eigenfunctions: Number of eigenfunctions of the Laplacian.
+        mu: Weight of the distances against smoothness, for a surface of unit area; `math.inf` fits the distances exactly.
+        sampling, first: How landmarks are chosen, see `Nystrom`.
 
     >>> cat.canonical_form(40, method=canonform.Spectral(n_eigenfunctions=50)).report["method"]
     'spectral'
@@ -134,14 +119,10 @@ class Spectral(_Sampled):
 class KernelPca(_Sampled):
     """`method="kpca"` with options: kernel PCA with the Nystrom method.
 
-    Attributes
-    ----------
-    sigma
-        Width of the kernel: "mean", "median" or "max" of the measured distances, or a length in mesh units.
-    rank
-        Eigenpairs of the kernel of the landmarks to keep, by default half.
-    sampling, first
-        How landmarks are chosen, see `Nystrom`.
+    Attributes:
+        sigma: Width of the kernel: "mean", "median" or "max" of the measured distances, or a length in mesh units.
+        rank: Eigenpairs of the kernel of the landmarks to keep, by default half.
+        sampling, first: How landmarks are chosen, see `Nystrom`.
 
     >>> cat.canonical_form(40, method=canonform.KernelPca(sigma="median")).report["method"]
     'kpca'
@@ -157,14 +138,10 @@ class KernelPca(_Sampled):
 class Smacof(_Regularized):
     """`method="smacof"` with options: SMACOF on all pairs, from the result of "nmds".
 
-    Attributes
-    ----------
-    max_iterations
-        Most steps.
-    tolerance
-        The last step reduces the stress by less than this share.
-    regularization, rank, alpha, sampling, first
-        Of the start, see `Nystrom`.
+    Attributes:
+        max_iterations: Most steps.
+        tolerance: The last step reduces the stress by less than this share.
+        regularization, rank, alpha, sampling, first: Of the start, see `Nystrom`.
 
     >>> cat.canonical_form(40, method=canonform.Smacof(max_iterations=5)).report["method"]
     'smacof'

@@ -18,14 +18,10 @@ from .errors import OptionError
 class EdgePoint:
     """A point of an edge. It may stand wherever a vertex may, as a source or a target.
 
-    Attributes
-    ----------
-    start
-        The vertex at one end.
-    end
-        The vertex at the other.
-    t
-        Where the point is, from 0 at the start to 1 at the end.
+    Attributes:
+        start: The vertex at one end.
+        end: The vertex at the other.
+        t: Where the point is, from 0 at the start to 1 at the end.
 
     >>> a, b = map(int, cat.edges[0])
     >>> float(cat.distances(canonform.EdgePoint(a, b)).min()) > 0
@@ -44,12 +40,9 @@ class EdgePoint:
 class FacePoint:
     """A point of a face. It may stand wherever a vertex may, as a source or a target.
 
-    Attributes
-    ----------
-    face
-        The face.
-    weights
-        Weights of the corners of the face, in their order: not negative, with a positive sum.
+    Attributes:
+        face: The face.
+        weights: Weights of the corners of the face, in their order: not negative, with a positive sum.
 
     >>> cat.path(0, canonform.FacePoint(8, (2, 1, 1))).at[-1]
     FacePoint(face=8, weights=(2.0, 1.0, 1.0))
@@ -78,16 +71,11 @@ def parsed(text: str) -> int | EdgePoint | FacePoint:
 class ClosestPoints(AsArray, ByValue):
     """The points of a surface that are nearest to points in space. `numpy.asarray` gives them.
 
-    Attributes
-    ----------
-    points
-        Shape (k, 3), in mesh units.
-    distances
-        How far they are, in mesh units: shape (k,).
-    faces
-        The face that each lies in: shape (k,).
-    weights
-        The weights of the corners of that face: shape (k, 3).
+    Attributes:
+        points: Shape (k, 3), in mesh units.
+        distances: How far they are, in mesh units: shape (k,).
+        faces: The face that each lies in: shape (k,).
+        weights: The weights of the corners of that face: shape (k, 3).
 
     >>> cat.closest_point(cat.vertices[:3]).distances.round(6).tolist()
     [0.0, 0.0, 0.0]
@@ -112,15 +100,11 @@ class ClosestPoints(AsArray, ByValue):
 class Eigenbasis(ByValue):
     """The smoothest functions on a surface: `laplacian @ functions == mass @ functions * values`.
 
-    Attributes
-    ----------
-    values
-        Eigenvalues, ascending from 0, in one over squared mesh units: shape (k,).
-    functions
-        Eigenfunctions as columns, orthonormal with the areas around vertices: shape (n, k). NaN for vertices that the repair
-        dropped.
-    masses
-        The area around each vertex, in squared mesh units: shape (n,).
+    Attributes:
+        values: Eigenvalues, ascending from 0, in one over squared mesh units: shape (k,).
+        functions: Eigenfunctions as columns, orthonormal with the areas around vertices: shape (n, k). NaN for vertices that the repair
+            dropped.
+        masses: The area around each vertex, in squared mesh units: shape (n,).
 
     >>> basis = cat.eigenbasis(20)
     >>> smooth = basis.synthesize(basis.project(cat.vertices))
@@ -137,12 +121,7 @@ class Eigenbasis(ByValue):
         return np.nan_to_num(self.functions.view(np.ndarray)) * self.masses[:, None]
 
     def project(self, values: ArrayLike) -> Floats:
-        """The coefficients of functions, shape (n,) or (n, d), in this basis: shape (k,) or (k, d).
-
-        Parameters
-        ----------
-        values
-            Shape (n,) or (n, d).
+        """The coefficients in this basis, shape (k,) or (k, d), of functions with these `values`, shape (n,) or (n, d).
 
         Raises `OptionError` if there is not one row for each vertex.
 
@@ -155,12 +134,7 @@ class Eigenbasis(ByValue):
         return self._weighted.T @ known
 
     def synthesize(self, coefficients: ArrayLike) -> VertexValues:
-        """The functions of coefficients, shape (k,) or (k, d), at the vertices.
-
-        Parameters
-        ----------
-        coefficients
-            Shape (k,) or (k, d).
+        """The functions of `coefficients`, shape (k,) or (k, d), at the vertices.
 
         Raises `OptionError` if there is not one row for each function.
 
@@ -173,17 +147,12 @@ class Eigenbasis(ByValue):
     def hks(self, times: ArrayLike | None = None, *, n_times: int = 16, scaled: bool = False) -> VertexValues:
         """The heat kernel signature of every vertex (Sun et al. 2009), shape (n_vertices, number of times).
 
-        Parameters
-        ----------
-        times, n_times
-            In squared mesh units; by default `n_times` of them, from the time of the last eigenfunction to that of the first.
-        scaled
-            Whether to divide each column by the trace of the kernel at that time, so that all times count alike.
+        Args:
+            times, n_times: In squared mesh units; by default `n_times` of them, from the time of the last eigenfunction to that of the
+                first.
+            scaled: Whether to divide each column by the trace of the kernel at that time, so that all times count alike.
 
         Raises `OptionError` if times are not positive, or all functions are constant.
-
-        >>> cat.eigenbasis(20).hks([100.0, 1000.0]).shape
-        (1000, 2)
         """
         curved = self._curved()
         if times is None:
@@ -196,20 +165,13 @@ class Eigenbasis(ByValue):
     ) -> VertexValues:
         """The wave kernel signature of every vertex (Aubry et al. 2011), shape (n_vertices, number of energies).
 
-        Parameters
-        ----------
-        energies, n_energies
-            Logarithms of eigenvalues; by default `n_energies` of them, evenly spaced from the lowest of the basis plus 2 `sigma` to
-            the highest minus 2 `sigma`.
-        sigma
-            Width of the bands of energy; by default 7 times the range of the logarithms over their number, as published.
-        scaled
-            Whether to divide each column by the sum of the weights of its eigenfunctions, as published.
+        Args:
+            energies, n_energies: Logarithms of eigenvalues; by default `n_energies` of them, evenly spaced from the lowest of the basis
+                plus 2 `sigma` to the highest minus 2 `sigma`.
+            sigma: Width of the bands of energy; by default 7 times the range of the logarithms over their number, as published.
+            scaled: Whether to divide each column by the sum of the weights of its eigenfunctions, as published.
 
         Raises `OptionError` if bands are wider than the spectrum, or all functions are constant.
-
-        >>> cat.eigenbasis(20).wks(n_energies=40).shape
-        (1000, 40)
         """
         curved = self._curved()
         low, high = np.log(curved[[0, -1]])
@@ -242,12 +204,9 @@ class Eigenbasis(ByValue):
         return on_vertices(self.functions.view(np.ndarray) ** 2 @ weights, writeable=False)
 
     def first(self, n_eigenfunctions: int) -> Eigenbasis:
-        """The first of its functions.
+        """The first `n_eigenfunctions` of its functions.
 
         Raises `OptionError` if it is not a whole number, 1 or more.
-
-        >>> cat.eigenbasis(20).first(5)
-        Eigenbasis(1000 vertices, 5 functions)
         """
         n = whole("n_eigenfunctions", n_eigenfunctions, 1)
         return Eigenbasis(self.values[:n], self.functions[:, :n].view(VertexValues), self.masses)

@@ -117,12 +117,9 @@ def n_bytes(size: int | str) -> int:
 class Shown(TypedDict, total=False):
     """Keywords that say how a call runs, and change nothing about its result.
 
-    Attributes
-    ----------
-    progress
-        True shows a bar (needs the package tqdm); a function gets the stage, the steps done and all steps.
-    threads
-        Number of threads, 0 for all cores; by default that of `set_threads`.
+    Attributes:
+        progress: True shows a bar (needs the package tqdm); a function gets the stage, the steps done and all steps.
+        threads: Number of threads, 0 for all cores; by default that of `set_threads`.
 
     >>> cat.distances(0, threads=1).shape
     (1000,)
@@ -135,14 +132,10 @@ class Shown(TypedDict, total=False):
 class Call(Shown, total=False):
     """Keywords of every call that may take long. They change nothing about its result.
 
-    Attributes
-    ----------
-    progress, threads
-        Whether to show progress, and the number of threads, as in `Shown`.
-    timeout
-        Seconds after which the call ends with `TimeLimitError`.
-    memory
-        Bytes that it may use, or text such as "2G". It replaces the limits that hold otherwise.
+    Attributes:
+        progress, threads: Whether to show progress, and the number of threads, as in `Shown`.
+        timeout: Seconds after which the call ends with `TimeLimitError`.
+        memory: Bytes that it may use, or text such as "2G". It replaces the limits that hold otherwise.
 
     >>> cat.distances(0, timeout=10, memory="1G", threads=1).shape
     (1000,)
@@ -165,10 +158,8 @@ def set_threads(n: int) -> None:
 
     Otherwise the environment variables RAYON_NUM_THREADS and OMP_NUM_THREADS say it. Results do not depend on it.
 
-    Parameters
-    ----------
-    n
-        The number, 0 for all cores.
+    Args:
+        n: The number, 0 for all cores.
 
     Raises `OptionError` if it is not a whole number, 0 or more.
 

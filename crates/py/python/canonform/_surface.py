@@ -29,7 +29,6 @@ from .errors import MeshError, OptionError, PointError, SurfaceLossWarning
 
 if TYPE_CHECKING:
     import pyvista
-    import trimesh
     from scipy import sparse
 
 Point: TypeAlias = int | np.integer[Any] | EdgePoint | FacePoint | str
@@ -80,10 +79,8 @@ class RepairReport(dict[str, Any]):
 
     `str(report)` says it in words.
 
-    Attributes
-    ----------
-    lines
-        One line for each kind of change; empty if nothing was changed.
+    Attributes:
+        lines: One line for each kind of change; empty if nothing was changed.
 
     >>> str(cat.repair_report)
     'nothing to repair'
@@ -101,16 +98,11 @@ class RepairReport(dict[str, Any]):
 class Path(AsArray, ByValue):
     """A shortest path along a surface.
 
-    Attributes
-    ----------
-    points
-        Its points from start to end, joined by straight lines: shape (k, 3), in mesh units.
-    at
-        The point of the mesh that each of them is: the number of a vertex, or a point of an edge or face.
-    along
-        The distance of each from the start, along the path, in mesh units: shape (k,).
-    length
-        Its length, in mesh units.
+    Attributes:
+        points: Its points from start to end, joined by straight lines: shape (k, 3), in mesh units.
+        at: The point of the mesh that each of them is: the number of a vertex, or a point of an edge or face.
+        along: The distance of each from the start, along the path, in mesh units: shape (k,).
+        length: Its length, in mesh units.
 
     >>> path = cat.path(0, 500)
     >>> path
@@ -134,16 +126,11 @@ class RepairedMesh(ByValue):
 
     Values on the input become values on this mesh by `values[to_input]`, and matrices by `matrix[to_input][:, to_input]`.
 
-    Attributes
-    ----------
-    vertices
-        Its vertices: shape (k, 3).
-    faces
-        Its faces: shape (l, 3).
-    to_input
-        For each of its vertices, the vertex of the input that it was, the first of those that were merged: shape (k,).
-    from_input
-        For each vertex of the input, the vertex that it became, or -1 if the repair dropped it: shape (n,).
+    Attributes:
+        vertices: Its vertices: shape (k, 3).
+        faces: Its faces: shape (l, 3).
+        to_input: For each of its vertices, the vertex of the input that it was, the first of those that were merged: shape (k,).
+        from_input: For each vertex of the input, the vertex that it became, or -1 if the repair dropped it: shape (n,).
 
     >>> cat.repaired
     RepairedMesh(1000 vertices, 1996 faces)
@@ -164,23 +151,17 @@ class Surface(Constant):
     Preparing a solver takes longer than one run of it, so it is kept: keep the surface, and call it as often as you like, from several
     threads if you want.
 
-    Parameters
-    ----------
-    mesh
-        The vertices: an array of shape (n, 3), of any type of numbers, in any unit of length. Or, without `faces`: vertices and faces in
-        a tuple; a mesh, scene or points of trimesh, meshio, PyVista or Open3D; the path of a mesh file; the file, open, or its bytes. Or
-        points without faces: they are smoothed if they are noisy, and joined by triangles.
-    faces
-        The triangles: an array of shape (m, 3) of vertex numbers, counted from 0. Faces of 4 corners are split into triangles, as in
-        files. Leave it out for a point cloud.
-    components
-        What happens to a mesh of several components: "largest" keeps the one of the largest area, "bridge" joins them by links, "error"
-        refuses the mesh.
-    weld
-        Which vertices are merged: "seams" merges those on boundaries that coincide or nearly do, "all" those in the same position, "none"
-        none, and a number those on boundaries within that distance, in mesh units.
-    format
-        The format of bytes, or of an open file without a name, such as "ply". Otherwise the extension tells it.
+    Args:
+        mesh: The vertices: an array of shape (n, 3), of any type of numbers, in any unit of length. Or, without `faces`: vertices and faces
+            in a tuple; a mesh, scene or points of trimesh, meshio, PyVista or Open3D; the path of a mesh file; the file, open, or its
+            bytes. Or points without faces: they are smoothed if they are noisy, and joined by triangles.
+        faces: The triangles: an array of shape (m, 3) of vertex numbers, counted from 0. Faces of 4 corners are split into triangles, as in
+            files. Leave it out for a point cloud.
+        components: What happens to a mesh of several components: "largest" keeps the one of the largest area, "bridge" joins them by links,
+            "error" refuses the mesh.
+        weld: Which vertices are merged: "seams" merges those on boundaries that coincide or nearly do, "all" those in the same position,
+            "none" none, and a number those on boundaries within that distance, in mesh units.
+        format: The format of bytes, or of an open file without a name, such as "ply". Otherwise the extension tells it.
 
     Raises `MeshError` if it is not a mesh with finite coordinates.
     Raises `MissingFileError`, `FileError` if a file cannot be read.
@@ -311,22 +292,15 @@ class Surface(Constant):
         max_distance: float = np.inf,
         **call: Unpack[Call],
     ) -> VertexValues:
-        """Distances along the surface from the nearest of the sources to every vertex.
+        """Distances along the surface from the nearest of the sources to every vertex: shape (n,), in mesh units.
 
-        Parameters
-        ----------
-        sources
-            A vertex number, an `EdgePoint`, a `FacePoint`, or several of them; or a mask of the vertices.
-        geodesic
-            How distances are measured, one of `distance_methods()`: "fast-marching", "exact", "heat", "dijkstra", "bfs"; or
-            `FastMarching` with options.
-        max_distance
-            Do not look farther than this, in mesh units; vertices beyond are infinitely far.
+        NaN for vertices that the repair dropped.
 
-        Returns
-        -------
-        VertexValues of shape (n,)
-            In mesh units; NaN for vertices that the repair dropped.
+        Args:
+            sources: A vertex number, an `EdgePoint`, a `FacePoint`, or several of them; or a mask of the vertices.
+            geodesic: How distances are measured, one of `distance_methods()`: "fast-marching", "exact", "heat", "dijkstra", "bfs"; or
+                `FastMarching` with options.
+            max_distance: Do not look farther than this, in mesh units; vertices beyond are infinitely far.
 
         Raises `PointError` if the mesh has no such point, or the repair dropped it.
 
@@ -343,22 +317,11 @@ class Surface(Constant):
     def distances_many(
         self, sources: Iterable[Point], *, geodesic: Geodesic = "fast-marching", max_distance: float = np.inf, **call: Unpack[Call]
     ) -> SourceRows:
-        """Distances from each source on its own, computed in parallel. Row i equals `distances(sources[i])`.
+        """Distances from each of several `sources` on its own, in parallel: shape (number of sources, n), in mesh units.
 
-        Parameters
-        ----------
-        sources
-            Points as in `distances`.
-
-        Returns
-        -------
-        SourceRows of shape (number of sources, n)
-            In mesh units.
+        Row i equals that of `distances` from one.
 
         Raises `PointError` if the mesh has no such point, or the repair dropped it.
-
-        >>> cat.distances_many([0, 10, 20]).shape
-        (3, 1000)
         """
         with running(call):
             return self._inner.distances_many(
@@ -374,12 +337,9 @@ class Surface(Constant):
 
         The path crosses faces and is as long as the exact distance.
 
-        Parameters
-        ----------
-        a
-            The start: a vertex, an `EdgePoint` or a `FacePoint`.
-        b
-            The end, or several.
+        Args:
+            a: The start: a vertex, an `EdgePoint` or a `FacePoint`.
+            b: The end, or several.
 
         Raises `PointError` if the mesh has no such point, the repair dropped it, or no path leads there.
 
@@ -398,24 +358,14 @@ class Surface(Constant):
     def farthest_points(
         self, n_points: int, *, first: int | None = None, geodesic: Geodesic = "fast-marching", **call: Unpack[Call]
     ) -> Ints:
-        """Vertices spread evenly over the surface, each the farthest from those before it.
+        """Vertices spread evenly over the surface, each the farthest from those before it: shape (n_points,).
 
-        Parameters
-        ----------
-        n_points
-            How many; fewer if the surface has fewer vertices.
-        first
-            The first of them. By default, the vertex farthest from vertex 0, a tip of the surface.
-
-        Returns
-        -------
-        ndarray of shape (n_points,)
-            Vertex numbers of the input.
+        Args:
+            n_points: How many; fewer if the surface has fewer vertices.
+            first: The first of them. By default, the vertex farthest from vertex 0, a tip of the surface.
+            geodesic: As in `distances`.
 
         Raises `PointError` if the mesh has no vertex `first`.
-
-        >>> cat.farthest_points(5).shape
-        (5,)
         """
         if first is not None and whole("first", first) >= self.n_vertices:
             raise PointError(f"first={first} is not possible: the mesh has {self.n_vertices} vertices, counted from 0")
@@ -427,20 +377,13 @@ class Surface(Constant):
     ) -> DistanceField:
         """The distances between all pairs of vertices, with bounds, in little memory.
 
-        Parameters
-        ----------
-        n_landmarks
-            Number of landmarks; each takes 2 bytes per vertex.
-        rank
-            Number of eigenpairs behind the estimates, by default half the landmarks; each takes 2 bytes per vertex.
-        geodesic
-            How distances are measured, as in `distances`. Only "exact" certifies the bounds; with others they are widened by the error that
-            was measured on this surface.
+        Args:
+            n_landmarks: Number of landmarks; each takes 2 bytes per vertex.
+            rank: Number of eigenpairs behind the estimates, by default half the landmarks; each takes 2 bytes per vertex.
+            geodesic: How distances are measured, as in `distances`. Only "exact" certifies the bounds; with others they are widened by the
+                error that was measured on this surface.
 
         Raises `OptionError`, `LimitError` if an option is not possible, or a limit does not suffice.
-
-        >>> cat.distance_field(20).row(0, tolerance=None)
-        PairDistances(1000 pairs, ... exact)
         """
         with running(call):
             inner = _canonform.DistanceField.build(
@@ -461,26 +404,21 @@ class Surface(Constant):
     ) -> Form:
         """Embed the surface so that straight-line distances approximate those along it.
 
-        Parameters
-        ----------
-        n_landmarks
-            Number of landmarks, vertices from which distances are measured; or "auto" to take them until twice as many reduced the
-            stress by less than 1 %, at most 640.
-        method
-            How distances become coordinates, one of `embedding_methods()`: "nmds", "landmark", "spectral", "kpca", "mds",
-            "smacof"; or one of `Nystrom`, `Landmark`, `Spectral`, `KernelPca`, `Smacof` with options.
-        n_components
-            Dimensions of the embedding.
-        stress
-            From which distances the stress is found: "exact" measures those between all pairs of vertices, "estimate" those of 100
-            vertices to all others, "skip" none. "auto" is exact where the method measures all pairs anyway;
-            else it estimates from one vertex for every 7 landmarks, at least 3, and at least 32 with n_landmarks="auto".
-            `Form.normalized_stress_interval` says how far an estimate is to be relied on.
-        seed
-            Of everything random, a whole number.
+        Args:
+            n_landmarks: Number of landmarks, vertices from which distances are measured; or "auto" to take them until twice as many reduced
+                the stress by less than 1 %, at most 640.
+            method: How distances become coordinates, one of `embedding_methods()`: "nmds", "landmark", "spectral", "kpca", "mds", "smacof";
+                or one of `Nystrom`, `Landmark`, `Spectral`, `KernelPca`, `Smacof` with options.
+            n_components: Dimensions of the embedding.
+            stress: From which distances the stress is found: "exact" measures those between all pairs of vertices, "estimate" those of 100
+                vertices to all others, "skip" none. "auto" is exact where the method measures all pairs anyway; else it estimates from one
+                vertex for every 7 landmarks, at least 3, and at least 32 with n_landmarks="auto". `Form.normalized_stress_interval` says
+                how far an estimate is to be relied on.
+            seed: Of everything random, a whole number.
 
-        Raises `OptionError` if an option is not possible, or has no effect beside the others.
-        EmbeddingError, LimitError
+        `geodesic` is that of `distances`.
+
+        Raises `OptionError`, `EmbeddingError` if an option is not possible, has no effect beside the others, or does not fit the mesh.
 
         >>> cat.canonical_form(50, method=canonform.Nystrom(rank=20)).points.shape
         (1000, 3)
@@ -497,20 +435,13 @@ class Surface(Constant):
     ) -> NDArray[np.float32] | Floats:
         """A vector that describes the shape regardless of pose, position, triangulation and, by default, size.
 
-        Parameters
-        ----------
-        kind
-            "fused" for all signatures as one vector, by which an index is searched: Euclidean distances between such vectors compare
-            shapes. Or one of "form-spectrum", "geodesic-spectrum", "shape-dna", "heat-kernel", "wave-kernel", "rigid".
-        n_landmarks
-            Number of landmarks of the form, see `canonical_form`.
-        size
-            Whether size counts; then all meshes need the same unit of length.
+        Its numbers have 32 bits if it is "fused", else 64. It is computed once and kept.
 
-        Returns
-        -------
-        ndarray
-            float32 for "fused", else float64. It is computed once and kept.
+        Args:
+            kind: "fused" for all signatures as one vector, by which an index is searched: Euclidean distances between such vectors compare
+                shapes. Or one of "form-spectrum", "geodesic-spectrum", "shape-dna", "heat-kernel", "wave-kernel", "rigid".
+            n_landmarks: Number of landmarks of the form, see `canonical_form`.
+            size: Whether size counts; then all meshes need the same unit of length.
 
         Raises `OptionError` if there is no such kind.
 
@@ -525,11 +456,9 @@ class Surface(Constant):
 
         Its entries are cotangents on an intrinsic Delaunay triangulation (Sharp and Crane 2020), none of them negative, for any mesh.
 
-        Parameters
-        ----------
-        repaired
-            Whether rows and columns are vertices of `Surface.repaired`. Otherwise those of vertices that the repair dropped are empty,
-            and of those that it merged, the first stands for all.
+        Args:
+            repaired: Whether rows and columns are vertices of `Surface.repaired`. Otherwise those of vertices that the repair dropped are
+                empty, and of those that it merged, the first stands for all.
 
         >>> W, A = cat.laplacian(), cat.mass()
         >>> W.shape, bool(abs(W.sum()) < 1e-6)
@@ -565,19 +494,11 @@ class Surface(Constant):
         return self._once(made, "operators")
 
     def eigenbasis(self, n_eigenfunctions: int = 100, **call: Unpack[Call]) -> Eigenbasis:
-        """The smallest eigenvalues of the intrinsic Laplacian, and their eigenfunctions; fewer if the surface has fewer vertices.
+        """The `n_eigenfunctions` smallest eigenvalues of the intrinsic Laplacian, and their eigenfunctions.
 
-        They are kept: the next call takes the first of them, and finds more only if there are not enough.
-
-        Parameters
-        ----------
-        n_eigenfunctions
-            How many.
+        Fewer if the surface has fewer vertices. They are kept: the next call takes the first of them, and finds more only if needed.
 
         Raises `OptionError` if it is not a whole number, 1 or more.
-
-        >>> cat.eigenbasis(20)
-        Eigenbasis(1000 vertices, 20 functions)
         """
         n = whole("n_eigenfunctions", n_eigenfunctions, 1)
         with running(call):
@@ -590,11 +511,7 @@ class Surface(Constant):
     def hks(
         self, times: ArrayLike | None = None, *, n_times: int = 16, scaled: bool = False, n_eigenfunctions: int = 100, **call: Unpack[Call]
     ) -> VertexValues:
-        """The heat kernel signature of every vertex, see `Eigenbasis.hks`. It is kept, and not writable.
-
-        >>> cat.hks(n_times=8).shape
-        (1000, 8)
-        """
+        """The heat kernel signature of every vertex, `Eigenbasis.hks` of `n_eigenfunctions`. It is kept, and not writable."""
         return self._kernels(Eigenbasis.hks, "times", times, n_eigenfunctions, call, n_times=n_times, scaled=scaled)
 
     def wks(
@@ -607,11 +524,7 @@ class Surface(Constant):
         n_eigenfunctions: int = 100,
         **call: Unpack[Call],
     ) -> VertexValues:
-        """The wave kernel signature of every vertex, see `Eigenbasis.wks`. It is kept, and not writable.
-
-        >>> cat.wks(n_energies=50).shape
-        (1000, 50)
-        """
+        """The wave kernel signature of every vertex, `Eigenbasis.wks` of `n_eigenfunctions`. It is kept, and not writable."""
         return self._kernels(Eigenbasis.wks, "energies", energies, n_eigenfunctions, call, n_energies=n_energies, sigma=sigma, scaled=scaled)
 
     def _kernels(
@@ -666,18 +579,10 @@ class Surface(Constant):
     @overload
     def gradient(self, values: ArrayLike) -> VertexValues: ...
     def gradient(self, values: ArrayLike | None = None) -> sparse.csr_array | VertexValues:
-        """The gradient on each face of a function that is linear there.
+        """The gradient on each face, shape (m, 3), of the function with these `values` at the vertices, shape (n,).
 
-        Parameters
-        ----------
-        values
-            The values of the function at the vertices, shape (n,).
-
-        Returns
-        -------
-        VertexValues of shape (m, 3), or without values a sparse matrix of shape (3 m, n)
-            `(surface.gradient() @ values).reshape(-1, 3)` equals `surface.gradient(values)`, except on faces without area, where the
-            matrix has empty rows, and the gradient is NaN.
+        Without values, the sparse matrix, shape (3 m, n), by which they are multiplied. On faces without area, its rows are empty, and
+        gradients are NaN.
 
         Raises `OptionError` if there is not one number for each vertex.
 
@@ -703,19 +608,10 @@ class Surface(Constant):
     @overload
     def divergence(self, vectors: ArrayLike) -> VertexValues: ...
     def divergence(self, vectors: ArrayLike | None = None) -> sparse.csr_array | VertexValues:
-        """The divergence of vectors on faces, integrated over the area around each vertex. Needs SciPy.
+        """The divergence of `vectors` on faces, shape (m, 3), integrated over the area around each vertex: shape (n,). Needs SciPy.
 
-        Divided by the areas around the vertices, the diagonal of `mass`, it is a density. `divergence() @ gradient()` has minus the
+        Without vectors, the sparse matrix, shape (n, 3 m), by which they are multiplied. Divided by the areas around the vertices, the diagonal of `mass`, it is a density. `divergence() @ gradient()` has minus the
         cotangents of the faces as they are.
-
-        Parameters
-        ----------
-        vectors
-            A vector for each face: shape (m, 3).
-
-        Returns
-        -------
-        VertexValues of shape (n,), or without vectors a sparse matrix of shape (n, 3 m)
 
         Raises `OptionError` if there is not one vector for each face.
 
@@ -746,10 +642,8 @@ class Surface(Constant):
 
         Takes as long as exact distances.
 
-        Parameters
-        ----------
-        source
-            A vertex, an `EdgePoint` or a `FacePoint`.
+        Args:
+            source: A vertex, an `EdgePoint` or a `FacePoint`.
 
         >>> square = canonform.Surface(np.array([[0, 0, 5], [1, 0, 5], [1, 1, 5], [0, 1, 5]]), np.array([[0, 1, 2], [0, 2, 3]]))
         >>> (square.log_map(0) + 0.0).round(6).tolist()
@@ -762,12 +656,7 @@ class Surface(Constant):
             return on_vertices(_canonform.log_map(self._inner, points[0], number("max_distance", max_distance, 0)))
 
     def closest_point(self, points: ArrayLike, **call: Unpack[Call]) -> ClosestPoints:
-        """For points in space, shape (3,) or (k, 3), the nearest points of the faces of the input that the repair kept.
-
-        Parameters
-        ----------
-        points
-            Shape (3,) or (k, 3).
+        """For `points` in space, shape (3,) or (k, 3), the nearest points of the faces of the input that the repair kept.
 
         Raises `PointError` if they are not points of finite coordinates.
 
@@ -787,29 +676,16 @@ class Surface(Constant):
         weights = np.clip(np.stack(shares, axis=1) / np.einsum("ij,ij->i", normal, normal)[:, None], 0, 1)
         return ClosestPoints(places, distances, faces, weights)
 
-    def to_trimesh(self) -> trimesh.Trimesh:
-        """The input as a mesh of the package trimesh, with vertices and faces in their order."""
-        import trimesh
-
-        return trimesh.Trimesh(self.vertices, self.faces, process=False)
-
     def write(self, path: str | os.PathLike[str], *, repaired: bool = False) -> None:
-        """Write the input, or the repaired mesh, as a mesh file. The extension tells the format; .ply keeps coordinates exactly.
-
-        Parameters
-        ----------
-        path
-            The file.
+        """Write the input, or the `repaired` mesh, to the file `path`. The extension tells the format; .ply keeps coordinates exactly.
 
         Raises `FileError` if the file cannot be written.
-
-        >>> cat.write("cat.off", repaired=True)
         """
         mesh = self.repaired if repaired else self
         _canonform.write(straight(mesh.vertices), straight(mesh.faces), os.fspath(path))
 
     def to_pyvista(self, **values: ArrayLike) -> pyvista.PolyData:
-        """The input as a mesh of the package PyVista, with arrays of one row for each vertex, or each face, by name.
+        """The input as a mesh of the package PyVista, with `values` by name: arrays of one row for each vertex, or each face.
 
         >>> cat.to_pyvista(distance=cat.distances(0)).plot()   # doctest: +SKIP
         """
@@ -821,7 +697,7 @@ class Surface(Constant):
         return mesh
 
     def picture(self, values: ArrayLike | None = None, **look: Unpack[Look]) -> bytes:
-        """A shaded picture of the surface as the bytes of a PNG file, colored by values at its vertices if given.
+        """A shaded picture of the surface as the bytes of a PNG file, colored by `values` at its vertices if given.
 
         The keywords of `Look` say from where, how large, and what is drawn on it.
 
@@ -837,16 +713,11 @@ class Surface(Constant):
     ) -> SurfaceView:
         """The surface to turn and zoom in a notebook, colored by values at its vertices if given.
 
-        Parameters
-        ----------
-        values
-            One number for each vertex; faces at vertices whose number is not finite are gray.
-        name
-            What the values are, for the color bar.
-        height
-            Height of the view, in pixels.
-        up
-            The axis that points up.
+        Args:
+            values: One number for each vertex; faces at vertices whose number is not finite are gray.
+            name: What the values are, for the color bar.
+            height: Height of the view, in pixels.
+            up: The axis that points up.
 
         Raises `OptionError` if there is not one number for each vertex.
 
@@ -872,9 +743,7 @@ class Surface(Constant):
 
 
 def read(path: str | os.PathLike[str], *, components: Components = "largest", weld: Weld = "seams", **call: Unpack[Call]) -> Surface:
-    """Read and repair a mesh file; the same as `Surface(path)`.
-
-    Raises `MissingFileError`, `FileError`, `MeshError` if the file cannot be read, or has no mesh.
+    """Read and repair the mesh file `path`, as `Surface` does.
 
     >>> cat.write("cat.ply")
     >>> canonform.read("cat.ply").n_vertices

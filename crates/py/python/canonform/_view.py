@@ -28,18 +28,12 @@ class SurfaceView(ByValue):
     A notebook shows it in a frame that needs no network. The first cell with a view stores the scripts, 0.7 MB, for all others: where
     it, scripts or WebGL are missing, a picture is seen instead.
 
-    Attributes
-    ----------
-    page
-        A page of HTML that shows the surface and fetches nothing: 0.75 MB, and about 18 bytes for each face.
-    picture
-        A picture of the surface: the bytes of a PNG file.
-    title
-        What is shown.
-    height
-        Height of the frame, in pixels.
-    n_faces
-        Faces that are shown: surfaces of more than 100,000 are simplified by merging vertices in cells of a grid.
+    Attributes:
+        page: A page of HTML that shows the surface and fetches nothing: 0.75 MB, and about 18 bytes for each face.
+        picture: A picture of the surface: the bytes of a PNG file.
+        title: What is shown.
+        height: Height of the frame, in pixels.
+        n_faces: Faces that are shown: surfaces of more than 100,000 are simplified by merging vertices in cells of a grid.
 
     >>> view = cat.view()
     >>> view.n_faces, view.picture[1:4]
@@ -53,10 +47,7 @@ class SurfaceView(ByValue):
     n_faces: int
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        """Write the page to a file, to open in a browser.
-
-        >>> cat.view().write("cat.html")
-        """
+        """Write the page to the file `path`, to open in a browser."""
         with open(path, "w", encoding="utf-8") as file:
             file.write(self.page)
 

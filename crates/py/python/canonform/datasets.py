@@ -26,19 +26,13 @@ _DATASET = ["cat", "centaur", "david"]
 class Shape(ByValue):
     """A generated mesh.
 
-    Attributes
-    ----------
-    name
-        Family and number, such as "cat0".
-    label
-        Family, such as "cat".
-    vertices
-        Shape (n, 3).
-    faces
-        Shape (m, 3).
-    rest
-        Where the vertices are before the body takes its pose, shape (n, 3): points of two shapes of a family correspond if they are
-        in the same place there. None for creatures.
+    Attributes:
+        name: Family and number, such as "cat0".
+        label: Family, such as "cat".
+        vertices: Shape (n, 3).
+        faces: Shape (m, 3).
+        rest: Where the vertices are before the body takes its pose, shape (n, 3): points of two shapes of a family correspond if they are
+            in the same place there. None for creatures.
 
     >>> shape = canonform.datasets.generate("worm", poses=1, n_vertices=1000)[0]
     >>> shape.name, shape.label, shape.surface().n_vertices
@@ -52,12 +46,7 @@ class Shape(ByValue):
     rest: Floats | None = None
 
     def true_map(self, other: Shape, **call: Unpack[Call]) -> Ints:
-        """For each vertex, the vertex of another shape of the family that it truly corresponds to: shape (n,).
-
-        Parameters
-        ----------
-        other
-            Another shape of the family.
+        """For each vertex, the vertex of `other`, a shape of the family, that it truly corresponds to: shape (n,).
 
         Raises `OptionError` for shapes of different families, and of creatures.
 
@@ -112,17 +101,12 @@ def generate(
 ) -> list[Shape]:
     """Generate labelled shapes in different poses.
 
-    Parameters
-    ----------
-    family
-        One or more of `families()`. "all" stands for cats, centaurs and davids: thirty shapes, as in Fig. 4 of the paper. People differ
-        in front and back on every limb, and their limbs touch: maps are judged on them.
-    poses
-        How many poses of each family, or which. By default all of them, and 8 of a creature.
-    n_vertices
-        Vertices of every shape, 1,000 to 1,000,000.
-    seed
-        Of bodies, poses and triangulations.
+    Args:
+        family: One or more of `families()`. "all" stands for cats, centaurs and davids: thirty shapes, as in Fig. 4 of the paper. People
+            differ in front and back on every limb, and their limbs touch: maps are judged on them.
+        poses: How many poses of each family, or which. By default all of them, and 8 of a creature.
+        n_vertices: Vertices of every shape, 1,000 to 1,000,000.
+        seed: Of bodies, poses and triangulations.
 
     Raises `OptionError` if there is no such family, pose or number of vertices.
 
@@ -149,14 +133,7 @@ def generate(
 
 
 def write(shapes: Iterable[Shape], folder: str | os.PathLike[str], *, format: MeshFormat = "off") -> list[str]:
-    """Write shapes into a folder, one file each, and return their paths.
-
-    Parameters
-    ----------
-    shapes, folder
-        What is written, and where.
-    format
-        The extension of the files.
+    """Write `shapes` into a `folder`, one file each, and return their paths. `format` is their extension.
 
     Raises `FileError` if a file cannot be written.
 

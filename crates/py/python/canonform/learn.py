@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform
 from ._arrays import Floats, Ints
-from ._reference import complete
 from ._settings import Call, Regularization, running, unmasked, whole
 from .errors import CanonformError, OptionError
 
@@ -49,49 +48,27 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
     each landmark, and O(n p) memory. It approximates the eigenvectors by the Nystrom method (Shamai, Zibulevsky and Kimmel 2015), and the
     same formula places points that were not there when it was fitted, from their distances to the landmarks.
 
-    Parameters
-    ----------
-    n_landmarks : int, default=100
-        Number of landmarks, fewer if there are fewer different points.
-    n_components : int, default=3
-        Dimensions of the embedding.
-    metric : str or callable, default="euclidean"
-        * A name that `sklearn.metrics.pairwise_distances` knows: X are vectors.
-        * "precomputed": X is the matrix of distances between all points, or in `transform` those from new points to all points of the
-          fit, or to the landmarks only.
-        * A function `metric(a, X)` that returns the distances from the point a to each of the points X, a column of the matrix. X may then
-          be any sequence: vectors, images, nodes of a graph, vertices of a surface.
-    metric_params : dict, default=None
-        Further arguments of the metric.
-    sampling : {"farthest", "random"}, default="farthest"
-        How landmarks are chosen: each the farthest from those before it, or at random.
-    regularization : {"low-rank", "rpi", "none", "cur"}, default="low-rank"
-        How the matrix of the landmarks is inverted, see `Nystrom`. Its options are parameters here, since grids of scikit-learn change
-        them one by one.
-    rank : int, default=None
-        Number of eigenvalues that "low-rank" keeps. By default half the landmarks, at least n_components + 4.
-    alpha : float or "paper", default=None
-        How strongly "rpi" damps small eigenvalues.
-    random_state : int, RandomState or None, default=None
-        For `sampling="random"`. Elsewhere in canonform a whole number, `seed`.
-    warm_start : bool, default=False
-        Keep the distances from the landmarks, so that the next fit to the same points measures those from further landmarks only:
-        `form.set_params(n_landmarks=200).fit(X)`. Takes the memory of n p numbers between fits.
+    Args:
+        n_landmarks: Number of landmarks, fewer if there are fewer different points.
+        n_components: Dimensions of the embedding.
+        metric: A name that `sklearn.metrics.pairwise_distances` knows, for vectors X. Or "precomputed": X is the matrix of distances
+            between all points, in `transform` those from new points to all points of the fit, or to the landmarks only. Or a function
+            `metric(a, X)` that returns the distances from the point a to each of the points X, any sequence: vectors, images, nodes of
+            a graph, vertices of a surface.
+        metric_params: Further arguments of the metric.
+        sampling: How landmarks are chosen: "farthest", each the farthest from those before it, or "random".
+        regularization, rank, alpha: As in `Nystrom`; parameters here, since grids of scikit-learn change them one by one.
+        random_state: For `sampling="random"`. Elsewhere in canonform a whole number, `seed`.
+        warm_start: Keep the distances from the landmarks, n p numbers, so that the next fit to the same points measures those from
+            further landmarks only: `form.set_params(n_landmarks=200).fit(X)`.
 
-    Attributes
-    ----------
-    embedding_ : ndarray of shape (n, n_components)
-        Coordinates of the points of the fit, centered, in the unit of the distances.
-    landmarks_ : ndarray of shape (p,)
-        The landmarks: indices of points of the fit.
-    eigenvalues_ : ndarray
-        Eigenvalues, descending; the first n_components belong to the columns of the embedding.
-    negative_mass_ : float
-        Share of negative eigenvalues, 0 to 1: how far the distances are from Euclidean.
-    rank_ : int
-        Eigenpairs of the matrix of the landmarks that were used.
-    n_features_in_ : int
-        Number of features of the points of the fit.
+    Attributes:
+        embedding_: Coordinates of the points of the fit, centered, in the unit of the distances: shape (n, n_components).
+        landmarks_: The landmarks, indices of points of the fit: shape (p,).
+        eigenvalues_: Eigenvalues, descending; the first n_components belong to the columns of the embedding.
+        negative_mass_: Share of negative eigenvalues, 0 to 1: how far the distances are from Euclidean.
+        rank_: Eigenpairs of the matrix of the landmarks that were used.
+        n_features_in_: Number of features of the points of the fit.
 
     Distances along the arc of a circle, which are those of points on a line:
 
@@ -139,16 +116,10 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
     def fit(self, X: Any, y: object = None, **call: Unpack[Call]) -> NystromMDS:
         """Choose landmarks and embed the points X.
 
-        Parameters
-        ----------
-        X, y
-            The points, as the metric takes them; y is ignored.
+        Args:
+            X, y: The points, as the metric takes them; y is ignored.
 
         Raises `OptionError`, `LimitError` if points or parameters cannot be used, or a limit does not suffice.
-
-        >>> points = np.random.default_rng(0).normal(size=(100, 3))
-        >>> canonform.NystromMDS(20).fit(points).embedding_.shape
-        (100, 3)
         """
         with _refused(), running(call):
             return self._fitted(X)
@@ -171,12 +142,7 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         return self
 
     def fit_transform(self, X: Any, y: object = None, **call: Unpack[Call]) -> Floats:
-        """Embed the points X, and return their coordinates: shape (n, n_components).
-
-        >>> points = np.random.default_rng(0).normal(size=(100, 3))
-        >>> canonform.NystromMDS(20).fit_transform(points).shape
-        (100, 3)
-        """
+        """Embed the points `X` as `fit` does, and return their coordinates: shape (n, n_components)."""
         return self.fit(X, **call).embedding_
 
     def transform(self, X: Any, **call: Unpack[Call]) -> Floats:
@@ -184,14 +150,8 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
 
         Points of the fit get their coordinates in `embedding_`, up to rounding.
 
-        Parameters
-        ----------
-        X
-            Points, or their distances to those of the fit or to the landmarks, as the metric takes them.
-
-        >>> points = np.random.default_rng(0).normal(size=(100, 3))
-        >>> canonform.NystromMDS(20).fit(points).transform(points[:5]).shape
-        (5, 3)
+        Args:
+            X: Points, or their distances to those of the fit or to the landmarks, as the metric takes them.
         """
         check_is_fitted(self)
         with _refused(), running(call):
@@ -313,6 +273,3 @@ class _Landmarks:
                 # The other points repeat landmarks, up to the rounding of Euclidean distances by scikit-learn.
                 self._is_complete = not self._nearest[self._next] > _ROUNDING * columns[:, 0].max()
         self._columns = columns[:, : len(self._taken)]
-
-
-complete([NystromMDS])
