@@ -91,11 +91,13 @@ def read_mesh(path):
 
 
 def write_mesh(path, vertices, faces):
-    """As OFF."""
+    """As OBJ or OFF, by the name."""
+    vertex, face, first = ("v ", "f ", 1) if path.endswith(".obj") else ("", "3 ", 0)
     with open(path, "w") as file:
-        file.write(f"OFF\n{len(vertices)} {len(faces)} 0\n")
-        file.writelines("%.17g %.17g %.17g\n" % tuple(v) for v in vertices)
-        file.writelines("3 %d %d %d\n" % tuple(f) for f in faces)
+        if not first:
+            file.write(f"OFF\n{len(vertices)} {len(faces)} 0\n")
+        file.writelines(vertex + "%.17g %.17g %.17g\n" % tuple(v) for v in vertices)
+        file.writelines(face + "%d %d %d\n" % tuple(f + first) for f in faces)
 
 
 def subdivided(vertices, faces):
