@@ -21,9 +21,6 @@ const STRAIGHT: f64 = 0.04;
 /// errors. With noise of .03 to .2 % of the size on 20 generated bodies and parts, subdivided or not, it is at most .09.
 const CORRELATION: f64 = 0.1;
 
-/// The fourth moment of what noise does, in squares of the second: 3 if it is normal, at most 3.5 on the same bodies and parts.
-const NORMAL_TAILS: f64 = 4.0;
-
 /// A copy has lost something if the vertices of the other one are farther from it than its own are from that, root mean square, by the
 /// first factor and mostly at few vertices, with a fourth moment above the limit, or by the second factor. The remeshed copies of those
 /// bodies and parts have lost tips and edges, finer ones too: nine of ten have 1.29 to 17. Decimated ones have at most 1.58 the other way
@@ -64,8 +61,7 @@ impl Merit {
 
 impl Displacements {
     fn is_noise(&self) -> bool {
-        let limit = CORRELATION + 2.0 / self.n_edges.sqrt();
-        self.correlation.abs() < limit && self.kurtosis < NORMAL_TAILS
+        self.correlation.abs() < CORRELATION + 2.0 / self.n_edges.sqrt()
     }
 
     /// Whether these vertices have something that the other surface, whose gaps are given, has lost.

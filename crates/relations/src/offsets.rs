@@ -16,9 +16,6 @@ use super::calibration::{FLUSH, STANDARD_ERRORS};
 use super::geometry::{MAX_ROUNDING, MeshGeometry};
 use super::noise::MIN_COSINE;
 
-/// Fewest vertices whose mean counts.
-const FEWEST: usize = 4;
-
 /// Where a vertex of one mesh is beside a region of the other. Of vertices with several faces there, sums over them.
 struct Contact {
     n: f64,
@@ -73,8 +70,7 @@ pub(super) fn systematic_offset(
         let offset = mean(all, |contact| contact.offset).abs() - STANDARD_ERRORS * error;
         offset / mean(all, |contact| contact.allowed)
     };
-    let large = patches.iter().chain(&whole).filter(|(_, all)| all.len() >= FEWEST);
-    large.map(beyond).reduce(f64::max)
+    patches.iter().chain(&whole).map(beyond).reduce(f64::max)
 }
 
 /// Vertices of one mesh beside each region of the other that faces at them lie on.
