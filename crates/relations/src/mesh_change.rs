@@ -104,8 +104,8 @@ pub(super) fn systematic_displacement(meshes: [&MeshGeometry; 2]) -> f64 {
 /// Whether nearly all vertices of `coarse` are vertices of `fine`; `map` takes the first onto the second.
 fn has_vertices(fine: &MeshGeometry, coarse: &MeshGeometry, map: &Similarity) -> bool {
     let Ok(nearest) = NearestPoints::new(fine.mesh().positions.clone()) else { return false };
-    // About the side of equilateral triangles of unit area in total.
-    let edge = (2.3 / fine.n_faces() as f64).sqrt();
+    // The side of equilateral triangles of unit area in total.
+    let edge = (4.0 / (3f64.sqrt() * fine.n_faces() as f64)).sqrt();
     let is_kept = |p: &Point3<f64>| nearest.nearest(&map.apply(p)).1 < (ABOUT * edge).powi(2);
     let kept = coarse.mesh().positions.iter().filter(|p| is_kept(p)).count();
     kept as f64 > (1.0 - ABOUT) * coarse.n_vertices() as f64

@@ -12,7 +12,7 @@ use super::geometry::{MAX_ROUNDING, MeshGeometry};
 const DOUBLINGS: i32 = 7;
 
 /// Faces of a plane, and faces that lie on each other, turn by less than this (cosine), also with noise, and most of the boundary of a
-/// plane is an edge that turns by more. As at sharp edges of parts, 40°.
+/// plane is an edge that turns by more: by 40°, as at sharp edges of parts.
 pub(super) const MIN_COSINE: f64 = 0.766;
 
 /// The least share of the area that planes of a part have, the two ends of a shaft for example, and the least that each of them has: as

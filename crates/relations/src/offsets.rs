@@ -46,7 +46,7 @@ pub(super) fn systematic_offset(
     // Normals and regions of the one with less noise.
     let (from, to, map, noise) =
         if is_first { (a, b, *map, noise) } else { (b, a, map.inverse(), [noise[1], noise[0]]) };
-    let mut contacts = contacts(from, to, &map, noise[0]);
+    let mut contacts = contacts(from, to, &map);
     without_motion(&mut contacts, noise)?;
     let mut patches: BTreeMap<Patch, Vec<&Contact>> = BTreeMap::new();
     let mut whole: BTreeMap<Patch, Vec<&Contact>> = BTreeMap::new();
@@ -74,7 +74,7 @@ pub(super) fn systematic_offset(
 }
 
 /// Vertices of one mesh beside each region of the other that faces at them lie on.
-fn contacts(from: &MeshGeometry, to: &MeshGeometry, map: &Similarity, noise: f64) -> Vec<(usize, Contact)> {
+fn contacts(from: &MeshGeometry, to: &MeshGeometry, map: &Similarity) -> Vec<(usize, Contact)> {
     let regions = to.surface.regions();
     let own_chords = &from.surface.regions().chord_errors;
     let rounding = FLUSH + from.rounding() + to.rounding();
@@ -94,11 +94,8 @@ fn contacts(from: &MeshGeometry, to: &MeshGeometry, map: &Similarity, noise: f64
             let region = regions.of_face[near.face];
             let chords = match regions.all[region].shape {
                 RegionShape::Plane { .. } => 0.0,
-                // Noise hides how far flat triangles are from a curved surface.
-                _ if noise > MAX_ROUNDING => 2.0 * regions.chord_errors[near.face],
                 _ => regions.chord_errors[near.face] + own_chords[f] * map.scale,
             };
-            let bulge = chords * bulge(&to.mesh().triangle(near.face), &p, &near.normal);
             let contact = found.entry((region, v)).or_insert_with(|| Contact {
                 n: 0.0,
                 at: p,
@@ -110,7 +107,7 @@ fn contacts(from: &MeshGeometry, to: &MeshGeometry, map: &Similarity, noise: f64
             contact.n += 1.0;
             contact.normal += near.normal;
             contact.offset += near.normal.dot(&(p - near.point));
-            contact.allowed += rounding + bulge;
+            contact.allowed += rounding + chords;
             contact.on.extend(to.mesh().faces[near.face]);
         }
     }
@@ -119,14 +116,6 @@ fn contacts(from: &MeshGeometry, to: &MeshGeometry, map: &Similarity, noise: f64
         (region, Contact { normal: normal / n, offset: offset / n, allowed: allowed / n, ..contact })
     };
     found.into_iter().map(mean).collect()
-}
-
-/// How much of the height of an arc may be over a triangle at a point: nothing at its corners, which lie on the curved surface, and
-/// all of it from a quarter of the shortest side on.
-fn bulge(corners: &[Point3<f64>; 3], p: &Point3<f64>, normal: &Vector3<f64>) -> f64 {
-    let chord = (0..3).map(|i| (corners[i] - corners[(i + 1) % 3]).norm()).fold(f64::INFINITY, f64::min);
-    let along = |corner: &Point3<f64>| (p - corner).cross(normal).norm();
-    (4.0 * corners.iter().map(along).fold(f64::INFINITY, f64::min) / chord).min(1.0)
 }
 
 /// Takes the small motion and change of size from offsets that explains most of them.
