@@ -19,7 +19,7 @@ SIZES = [1_000, 3_400, 10_000, 30_000, 100_000, 300_000]
 STORED = [100, 1_000, 4_000]
 VECTORS = [10_000, 100_000, 1_000_000]
 # Numbers in a fused vector.
-DIM = 199
+DIM = 172
 QUERIES = 300
 SHAPES = 10_000_000
 LARGEST = 1_000_000
@@ -123,8 +123,7 @@ def section(args):
         stored = store(folder, [n for n in STORED if n <= args.shapes])
         searched = search(folder, [n for n in VECTORS if n <= args.vectors])
     random = np.random.default_rng(1)
-    sizes = np.minimum(args.median * np.exp(args.sigma / 100 * random.standard_normal(SHAPES)), LARGEST)
-    sizes = np.maximum(sizes, 200)
+    sizes = np.clip(args.median * np.exp(args.sigma / 100 * random.standard_normal(SHAPES)), 200, LARGEST)
     cost = costs(sizes, described)
     total = cost.sum()
     order = np.sort(cost)[::-1]

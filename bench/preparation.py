@@ -17,8 +17,7 @@ def section(args):
     runs += [(f"armadillo, subdivided {times}", meshes["armadillo"], count) for count, times in [(1, "once"), (2, "twice")]]
     for title, path, subdivisions in runs:
         rounds = max(3, args.rounds >> subdivisions)
-        program = os.path.join(EXAMPLES, "preparation")
-        for line in run([program, path, str(subdivisions), str(rounds)]).output.splitlines():
+        for line in run([os.path.join(EXAMPLES, "preparation"), path, str(subdivisions), str(rounds)]).output.splitlines():
             row = json.loads(line)
             spent = ", ".join(f"{1e3 * row[part]:.1f}" for part in ("connectivity", "solver", "map"))
             cells = lines.setdefault(f"{title}, {row['vertices']:,}", {})
