@@ -25,7 +25,6 @@ from sklearn.utils.estimator_checks import parametrize_with_checks  # noqa: E402
     [
         NystromMDS(n_components=1),
         NystromMDS(n_components=1, sampling="random", random_state=0),
-        NystromMDS(n_components=1, warm_start=True),
     ]
 )
 def test_estimator_checks(estimator, check) -> None:
@@ -150,36 +149,6 @@ def test_unreachable_points_are_refused() -> None:
     mds = NystromMDS(n_components=1, metric=lambda a, X: distances[a][X])
     with pytest.raises(ValueError, match="finite"):
         mds.fit(np.arange(3))
-
-
-def test_further_landmarks_are_added_without_measuring_the_first_again() -> None:
-    points = np.random.default_rng(3).normal(size=(60, 3))
-    measured = []
-
-    def metric(a, b):
-        measured.append(1)
-        return np.linalg.norm(np.asarray(b) - a, axis=1)
-
-    def fitted(estimator: NystromMDS, n: int) -> int:
-        measured.clear()
-        estimator.set_params(n_landmarks=n).fit(points)
-        return len(measured)
-
-    warm, cold = NystromMDS(metric=metric, warm_start=True), NystromMDS(metric=metric)
-    # One column more finds the first landmark, or tells that the points are the same.
-    assert (fitted(warm, 10), fitted(warm, 25), fitted(cold, 25)) == (11, 16, 26)
-    np.testing.assert_array_equal(warm.embedding_, cold.embedding_)
-    assert fitted(warm, 8) == 1 and fitted(cold, 8) == 9
-    np.testing.assert_array_equal(warm.embedding_, cold.embedding_)
-    # Other points begin anew.
-    points = points[::-1].copy()
-    assert fitted(warm, 8) == 1 + 9
-    fitted(cold, 8)
-    np.testing.assert_array_equal(warm.embedding_, cold.embedding_)
-    # A stored estimator continues, too.
-    again = pickle.loads(pickle.dumps(NystromMDS(n_landmarks=5, warm_start=True).fit(points)))
-    again.set_params(n_landmarks=9).fit(points)
-    np.testing.assert_array_equal(again.embedding_, NystromMDS(n_landmarks=9).fit(points).embedding_)
 
 
 def test_calls_end_at_their_limits() -> None:

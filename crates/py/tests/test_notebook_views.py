@@ -276,7 +276,7 @@ def run_cell(monkeypatch: pytest.MonkeyPatch, cell: str, run: str, **metadata: s
 
 @pytest.mark.slow
 def test_one_cell_has_the_scripts_of_all_views(view: SurfaceView, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(_view._Cell, "known", None)
+    monkeypatch.setattr(_view, "_carrier", [])
     outputs = []
     for run, (cell, metadata) in enumerate([("a", {}), ("b", {}), ("a", {}), ("c", {"cellId": "1"}), ("edited", {"cellId": "1"})]):
         run_cell(monkeypatch, cell, f"run {run}", **metadata)
@@ -284,7 +284,7 @@ def test_one_cell_has_the_scripts_of_all_views(view: SurfaceView, tmp_path: Path
     # The first view of the first cell, and again when that cell runs again.
     assert ["<script>" in output for output in outputs] == [i in (0, 4) for i in range(10)]
     assert len(outputs[0]) < 1_000_000 and len(outputs[1]) < 150_000
-    monkeypatch.setattr(_view._Cell, "known", None)
+    monkeypatch.setattr(_view, "_carrier", [])
     run_cell(monkeypatch, "text", "run 1", cellId="1")
     assert "<script>" in view._repr_html_()
     run_cell(monkeypatch, "edited", "run 2", cellId="1")

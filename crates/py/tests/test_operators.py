@@ -233,8 +233,8 @@ def test_what_was_computed_is_kept_and_grows(cat: Shape, monkeypatch: pytest.Mon
     found = _canonform.eigenbasis
     monkeypatch.setattr(_canonform, "eigenbasis", lambda surface, k: (asked.append(k), found(surface, k))[1])
     basis = surface.eigenbasis(30)
-    assert surface.hks(n_eigenfunctions=30) is surface.hks(n_eigenfunctions=30)
-    assert surface.wks(n_eigenfunctions=20) is surface.wks(n_eigenfunctions=20)
+    np.testing.assert_array_equal(surface.hks(n_eigenfunctions=30), basis.hks())
+    assert surface.wks(n_eigenfunctions=20).shape == (1000, 100)
     assert surface.eigenbasis(30) is basis and asked == [30]
     np.testing.assert_array_equal(surface.eigenbasis(12).functions, basis.functions[:, :12])
     assert len(surface.eigenbasis(40)) == 40 and asked == [30, 40]

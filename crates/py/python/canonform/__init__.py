@@ -17,7 +17,8 @@ may take long take the keywords of `Call`: `progress`, `timeout`, `memory` and `
 
 Arrays may be of any real type and layout. Vertices and faces are counted from 0, results are in the vertex order of the input, and
 lengths are in the units of the mesh. The same input, options and seed give the same numbers as the command line, for any number of
-threads.
+threads. Arguments that are not possible raise `OptionError`, points that a mesh lacks `PointError`, names that an index lacks
+`NoSuchShapeError`, files `FileError`, and limits `LimitError`, all in `canonform.errors`; docstrings name what else may happen.
 
 In all examples `cat` and `other` are surfaces, two poses of a cat, `found` the maps from one to the other, and `index` is an index
 of three cats, three centaurs and three davids.

@@ -99,6 +99,14 @@ def numeric(
     return straight(array, dtype)
 
 
+def numbers(name: str, values: Any, least: float = -np.inf) -> Floats:
+    """The finite numbers that an argument must be, one or several, larger than the least one."""
+    found: Floats = numeric(name, values if np.ndim(values) else [values], ("k",))
+    if not found.size or not np.isfinite(found).all() or found.min() <= least:
+        raise OptionError(f"{name}={values!r} is not possible: give finite numbers" + (f" larger than {least:g}" if least > -np.inf else ""))
+    return found
+
+
 def mesh_of(mesh: Any, faces: Any = None) -> tuple[Floats, Ints, list[str]]:
     """Vertices, triangles and notes, from arrays, from both in a tuple, or from a mesh or points of another package."""
     blocks = None if faces is None else _blocks(faces)

@@ -28,11 +28,6 @@ class Alignment(ByValue):
         translation: In mesh units, shape (3,).
         reflected: Whether the motion includes a reflection.
         rms: Root mean square distance between nearest points of the aligned forms, in mesh units.
-
-    >>> a, b = (surface.canonical_form(50) for surface in (cat, other))
-    >>> alignment = canonform.align(a, b)
-    >>> alignment.apply(a.points).shape
-    (1000, 3)
     """
 
     rotation: Floats
@@ -41,10 +36,7 @@ class Alignment(ByValue):
     rms: float
 
     def apply(self, points: ArrayLike) -> Floats:
-        """Moves `points`, shape (k, 3).
-
-        Raises `OptionError` if they are not points.
-        """
+        """Moves `points`, shape (k, 3)."""
         return numeric("points", points, ("k", 3)) @ self.rotation.T + self.translation
 
     def __repr__(self) -> str:
@@ -55,10 +47,8 @@ class Alignment(ByValue):
 def align(a: Form | AnyMesh, b: Form | AnyMesh, *, reflections: bool = True, **call: Unpack[Call]) -> Alignment:
     """The motion that takes the form of a onto that of b, in mesh units.
 
-    A surface, or a mesh as `compare` takes it, stands for its canonical form with default options. `compare` uses forms at equal size instead.
-
     Args:
-        a, b: Forms, surfaces, mesh files, or meshes in memory.
+        a, b: Forms; or surfaces and meshes as `compare` takes them, which stand for their canonical forms with default options.
         reflections: Whether the motion may include a reflection.
 
     Raises `EmbeddingError` if a form is not three-dimensional.
@@ -154,14 +144,10 @@ def compare(
 ) -> Comparison:
     """Compare two shapes: one shape, one class or different ones; the same geometry, scaled, mirrored, remeshed, part of the other.
 
-    A surface is described once, and keeps that.
-
     Args:
         names: What the two are called in words; by default their file names.
         a, b: Surfaces, mesh files, or meshes in memory as `Surface` takes them.
         n_landmarks, method, geodesic, seed: As in `Surface.canonical_form`; the relation does not depend on them.
-
-    Raises `OptionError`, `MeshError` if an option is not possible, or a mesh cannot be used.
 
     >>> canonform.compare(cat, canonform.Surface(2 * cat.vertices, cat.faces)).match
     'scaled'

@@ -22,14 +22,7 @@ class PairDistance:
     """The distance of two vertices, with bounds, in mesh units.
 
     Attributes:
-        distance: The estimate, between the bounds.
-        lower: The distance is not below this.
-        upper: The distance is not above this.
-        exact: Whether the distance is exact instead of an estimate.
-
-    >>> pair = cat.distance_field(20, geodesic="exact").pair(3, 500)
-    >>> pair.lower <= pair.distance <= pair.upper
-    True
+        distance, lower, upper, exact: As in `PairDistances`.
     """
 
     distance: float
@@ -49,9 +42,6 @@ class PairDistances(AsArray, ByValue):
         lower: No distance is below these.
         upper: No distance is above these.
         exact: Which distances are exact instead of estimates.
-
-    >>> cat.distance_field(20).pairs([[0, 5], [3, 500]], tolerance=0)
-    PairDistances(2 pairs, 2 exact)
     """
 
     _rows = "distance"
@@ -74,11 +64,6 @@ class DistanceField(Constant):
     """The distances between all pairs of vertices of a surface, in a few hundred bytes per vertex, with bounds.
 
     Made by `Surface.distance_field`, or read from a file by `DistanceField.load`. A file is that of the command line.
-
-    >>> field = cat.distance_field(geodesic="exact")
-    >>> pair = field.pair(3, 500)
-    >>> pair.lower <= pair.distance <= pair.upper
-    True
     """
 
     def __init__(self, inner: _canonform.DistanceField) -> None:
@@ -94,8 +79,6 @@ class DistanceField(Constant):
     def load(cls, path: str | os.PathLike[str]) -> DistanceField:
         """Read a field from the file `path`.
 
-        Raises `MissingFileError`, `FileError` if the file cannot be read, or is no field.
-
         >>> cat.distance_field(20).save("cat.field")
         >>> canonform.DistanceField.load("cat.field").n_vertices
         1000
@@ -103,10 +86,7 @@ class DistanceField(Constant):
         return cls(_canonform.DistanceField.open(os.fspath(path)))
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the field to the file `path`.
-
-        Raises `FileError` if the file cannot be written.
-        """
+        """Write the field to the file `path`."""
         self._inner.save(os.fspath(path))
 
     @property
@@ -130,10 +110,7 @@ class DistanceField(Constant):
         return bool(self.facts["bounds"]["kind"] == "certified")
 
     def pair(self, a: int, b: int) -> PairDistance:
-        """The distance of two vertices, `a` and `b`, estimated.
-
-        Raises `PointError` if the mesh has no such vertex.
-        """
+        """The distance of two vertices, `a` and `b`, estimated."""
         found = self.pairs([[a, b]], tolerance=None)
         return PairDistance(*(values[0].item() for values in (found.distance, found.lower, found.upper, found.exact)))
 
@@ -146,25 +123,18 @@ class DistanceField(Constant):
             pairs: Vertex numbers, shape (k, 2).
             tolerance: Pairs whose bounds are farther apart than this share of the distance are finished by exact propagation on the
                 surface. None finishes no pair.
-
-        Raises `PointError` if the mesh has no such vertex, or they are not pairs of vertices.
         """
         array: Ints = numeric("pairs", pairs, ("k", 2), np.int64, PointError) if np.size(pairs) else np.empty((0, 2), dtype=np.int64)
         with running(call):
             return PairDistances(*self._inner.pairs(array, _share(tolerance)))
 
     def row(self, source: int, *, tolerance: float | None = 0.05, **call: Unpack[Call]) -> PairDistances:
-        """The distances from one vertex, `source`, to all, in the order of the input; `tolerance` as in `pairs`.
-
-        Raises `PointError` if the mesh has no such vertex.
-        """
+        """The distances from one vertex, `source`, to all, in the order of the input; `tolerance` as in `pairs`."""
         with running(call):
             return PairDistances(*self._inner.row(source, _share(tolerance)))
 
     def nearest(self, source: int, k: int, **call: Unpack[Call]) -> tuple[Ints, Floats]:
         """The `k` vertices nearest to the vertex `source` along the surface, itself left out, and their exact distances, nearest first.
-
-        Raises `PointError` if the mesh has no such vertex.
 
         >>> vertices, distances = cat.distance_field(20).nearest(0, 5)
         >>> len(vertices), bool((np.diff(distances) >= 0).all())

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from html import escape
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias, Unpack, overload
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, Unpack, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -39,6 +39,8 @@ Meshes: TypeAlias = AnyPath | Mapping[str, AnyMesh] | Iterable[AnyPath | Surface
 Labels: TypeAlias = Mapping[str, str] | Sequence[str] | AnyPath
 """Classes by name, in the order of the meshes, or where they come from."""
 
+_Files: TypeAlias = tuple[AnyPath | list[AnyPath], Labels | None, list[dict[str, Any]]]
+
 _PICTURED = 6
 
 
@@ -51,9 +53,6 @@ class ShapeEntry:
         label: Its class; empty if it has none.
         path: Its mesh file.
         n_vertices, n_faces: The size of its mesh.
-
-    >>> index["cat0"].label, index["cat0"].n_vertices
-    ('cat', 1000)
     """
 
     id: str
@@ -69,9 +68,7 @@ class Result:
 
     Attributes:
         rank: Counted from 1.
-        id: Its name.
-        label: Its class; empty if it has none.
-        path: Its mesh file.
+        id, label, path: As of `ShapeEntry`.
         distance: Combined distance from the query, by signatures and aligned forms.
         fused: Distance by signatures alone.
         relation: How the query and the shape are related, as in `Comparison.relation`; by files and meshes, too, if the search explains.
@@ -100,28 +97,16 @@ class Result:
     form_distance: float | None
 
 
-class _Surfaces(Protocol):
-    """Where the surfaces of results are."""
-
-    def surface(self, id: str) -> Surface: ...
-
-
 class SearchResults(Stored, Sequence[Result]):
     """The shapes nearest to a query, nearest first.
 
     Attributes:
         report: The answer that `canonform search --json` prints.
-
-    >>> results = index.search(cat, k=2)
-    >>> results.label, [result.id for result in results]
-    ('cat', ['cat0', 'cat1'])
     """
 
-    def __init__(self, report: dict[str, Any], query: Surface | str, name: str, index: _Surfaces) -> None:
+    def __init__(self, report: dict[str, Any], query: Surface | str, name: str, index: Any) -> None:
         self.report = report
-        self._results = [
-            Result(**{field.name: found.get(field.name) for field in fields(Result)}) for found in report["results"]
-        ]
+        self._results = [Result(**{field.name: found.get(field.name) for field in fields(Result)}) for found in report["results"]]
         self._query, self._name, self._index = query, name, index
 
     @property
@@ -177,12 +162,7 @@ class SearchResults(Stored, Sequence[Result]):
 
 
 class Scores(dict[str, Any]):
-    """How well classes are separated: the object that `canonform evaluate --json` prints, with `nn`, `ft`, `st`, `map`, ...
-
-    >>> scores = index.evaluate()
-    >>> scores["nn"], scores.to_pandas().shape
-    (1.0, (3, 3))
-    """
+    """How well classes are separated: the object that `canonform evaluate --json` prints, with `nn`, `ft`, `st`, `map`, ..."""
 
     def to_pandas(self) -> pandas.DataFrame:
         """How many shapes of each class, a row, were taken for each class, a column, by their neighbors."""
@@ -239,7 +219,7 @@ class Index(Stored):
         memory: int | str | None = None,
         **call: Unpack[Shown],
     ) -> Index:
-        """Make a file the index of meshes, and open it.
+        """Make the file `path` the index of meshes, and open it.
 
         Only new and changed meshes are described. After an interruption, call it again: finished work is kept. Meshes that cannot be
         described are left out and listed in `build_report["failed"]`.
@@ -247,7 +227,6 @@ class Index(Stored):
         Args:
             meshes: A folder, also with sub-folders, an archive, a list file, or paths of mesh files. Or meshes in memory, as `Surface`
                 takes them: a dictionary from names to meshes, or (name, mesh) and (name, mesh, class). A name may have folders: "cats/tom".
-            path: The index.
             labels: Where classes come from: "folders", "folders:N" (the N-th below), "names" (their leading letters), "none", classes in
                 the order of the meshes or by name of the shape, or a file of lines `name,label`; shapes that are not named there have no
                 class. By default, an index keeps those that were given; else sub-folders beside each other are classes if at least two hold
@@ -274,15 +253,18 @@ class Index(Stored):
             weld=weld, seed=seed, max_vertices=max_vertices, timeout=timeout, memory=memory,
         )  # fmt: skip
         part = None if shard is None else (whole("shard", shard[0]), whole("shard", shard[1], 1))
-        with running(call), in_files(meshes, path, labels, keep=keep_meshes) as files:
+        with running(call), in_files(meshes, path, labels, keep=keep_meshes) as (paths, known, failed):
             with TemporaryDirectory() as lists:
-                (dataset, name), label_file = dataset_of(files.paths, lists), label_file_of(files.labels, lists)
+                (dataset, name), label_file = dataset_of(paths, lists), label_file_of(known, lists)
                 report = json.loads(_canonform.Index.build(dataset, os.fspath(path), label_file, bool(prune), part, None, False, settings))
-        report["failed"] += files.failed
+        report["failed"] += failed
         if not os.path.exists(path):
-            first = report["failed"][0]["error"] if report["failed"] else "there are no meshes"
-            raise MeshError(f"no mesh of {name} could be described, so no index was written; the first: {first}")
+            raise none_described(name, report["failed"])
         _warn_of_skipped(report)
+        return cls._opened(path, report)
+
+    @classmethod
+    def _opened(cls, path: AnyPath, report: dict[str, Any]) -> Index:
         index = cls(path)
         index.build_report = report
         return index
@@ -299,10 +281,8 @@ class Index(Stored):
         10
         """
         with running(call):
-            report = json.loads(_canonform.merge_indexes([os.fspath(index) for index in indexes], os.fspath(path)))
-        index = cls(path)
-        index.build_report = report
-        return index
+            report = _canonform.merge_indexes([os.fspath(index) for index in indexes], os.fspath(path))
+        return cls._opened(path, json.loads(report))
 
     def add(
         self,
@@ -328,27 +308,20 @@ class Index(Stored):
         >>> index.add([("tom", cat, "cat")])["n_shapes"], index.remove("tom")
         (10, 9)
         """
-        if label is not None and labels is not None:
-            raise OptionError("label= has no effect with labels=; leave one of them out")
         settings = options_of(max_vertices=max_vertices, timeout=timeout, memory=memory)
-        with running(call), in_files(meshes, self.path, labels, keep=False, add=not replace) as files:
-            if label is not None and files.labels is not None:
-                raise OptionError("label= has no effect for meshes that come with a class; leave one of them out")
-            paths = [files.paths] if isinstance(files.paths, (str, os.PathLike)) else files.paths
+        with running(call), in_files(meshes, self.path, labels, keep=False, add=not replace) as (paths, known, failed):
+            if label is not None and known is not None:
+                raise OptionError("label= has no effect with labels=, or for meshes that come with a class; leave one of them out")
+            files = [os.fspath(path) for path in ([paths] if isinstance(paths, (str, os.PathLike)) else paths)]
             with TemporaryDirectory() as lists:
-                label_file = label_file_of(files.labels, lists)
-                added = _canonform.Index.add(self.path, [os.fspath(path) for path in paths], label, label_file, bool(replace), settings)
-        report = json.loads(added)
-        report["failed"] += files.failed
+                report = json.loads(_canonform.Index.add(self.path, files, label, label_file_of(known, lists), bool(replace), settings))
+        report["failed"] += failed
         _warn_of_skipped(report)
         self._reopen(report)
-        return self.build_report or {}
+        return report
 
     def remove(self, ids: str | Iterable[str]) -> int:
-        """Remove the shapes of these names, `ids`; none if one is unknown. Returns how many shapes are left.
-
-        Raises `NoSuchShapeError` if the index has no shape of this name.
-        """
+        """Remove the shapes of these names, `ids`; none if one is unknown. Returns how many shapes are left."""
         left = _canonform.Index.remove(self.path, [ids] if isinstance(ids, str) else [word("ids", id) for id in ids])
         self._reopen(None)
         return left
@@ -368,8 +341,6 @@ class Index(Stored):
                 by how well the query fits as a part of the shape, for a mesh that was cut or scanned in part, "forms" by canonical forms
                 alone.
             explain: Say how each result is related to the query, as `compare` does; reads the mesh files of the results.
-
-        Raises `NoSuchShapeError`, `MeshError` if the query is neither a file, nor a shape of the index, nor a mesh.
 
         >>> index.search(other, k=3)[0].id
         'cat1'
@@ -415,16 +386,11 @@ class Index(Stored):
             rank: "plain", or "graph" to score the ranking on the graph of nearest neighbors as well, under the key `graph`.
             labels: Other classes, as in `build`.
 
-        Raises `OptionError` if options are not possible, or classes are not one for each shape.
-
         >>> index.evaluate(by=index.distances(kind="fused"))["nn"]
         1.0
         """
         ids = list(self)
-        if labels is not None and not isinstance(labels, (str, os.PathLike, Mapping)):
-            if len(labels) != len(ids):
-                raise OptionError(f"labels= has {len(labels)} classes for {len(ids)} shapes; give one for each")
-            labels = dict(zip(ids, labels, strict=True))
+        labels = _by_name(labels, ids)
         with running(call):
             if isinstance(by, str) and by != "combined":
                 with TemporaryDirectory() as lists:
@@ -457,16 +423,11 @@ class Index(Stored):
         return self._inner.vectors()
 
     def vector(self, id: str) -> NDArray[np.float32]:
-        """The fused signature of the shape `id`.
-
-        Raises `NoSuchShapeError` if the index has no shape of this name.
-        """
+        """The fused signature of the shape `id`."""
         return self._inner.vector(word("id", id))
 
     def nearest(self, vector: ArrayLike, k: int = 10, **call: Unpack[Call]) -> list[tuple[str, float]]:
         """The `k` shapes whose signatures are nearest to `vector`, such as `Surface.signature()`: names and distances, nearest first.
-
-        Raises `ShapeIndexError` if the vector has another length.
 
         >>> [name for name, distance in index.nearest(cat.signature(), 2)]
         ['cat0', 'cat1']
@@ -488,11 +449,6 @@ class Index(Stored):
             ids: Names of shapes. By default all, in the order of `shapes`.
             others: Names of other shapes. By default the same, and the matrix is symmetric.
             kind: "combined" aligns the forms of every pair; "fused" compares signatures only, and is much faster.
-
-        Raises `NoSuchShapeError` if the index has no shape of this name.
-
-        >>> index.distances(["cat0"], ["cat1", "david0"]).shape
-        (1, 2)
         """
         rows = list(self) if ids is None else [word("ids", id) for id in ids]
         with running(call):
@@ -537,8 +493,6 @@ class Index(Stored):
             keep: Which file of a group is kept: "exact", "largest", "smallest", "oldest", "newest", or one in a folder.
             reference: Folders and archives from which nothing is to be removed.
 
-        Raises `OptionError` if there is no such kind of relation.
-
         >>> cat.write("copy.ply")
         >>> index.add("copy.ply")["n_shapes"]
         10
@@ -555,8 +509,6 @@ class Index(Stored):
         """Write the index to `path`, the same however it was built. The extension tells the format: jsonl, parquet, npz or csv.
 
         With the extension lance, write its vectors to a table as `distributed.vector_table` does.
-
-        Raises `OptionError`, `FileError` if there is no such format, or the file cannot be written.
         """
         if os.fspath(path).endswith(".lance"):
             from .distributed import vector_table
@@ -597,32 +549,44 @@ class Index(Stored):
 
 
 def _warn_of_skipped(report: dict[str, Any]) -> None:
-    failed = report["failed"]
-    if failed:
-        first = failed[0]
-        warned(
-            f"{len(failed)} of the meshes are not in the index; the first, {first['path']}: {first['error']}; `build_report` lists them",
-            SkippedMeshWarning,
-        )
+    n, first = len(report["failed"]), next(iter(report["failed"]), None)
+    if first is not None:
+        message = f"{n} of the meshes are not in the index; the first, {first['path']}: {first['error']}; `build_report` lists them"
+        warned(message, SkippedMeshWarning)
+
+
+def none_described(name: str, failed: list[dict[str, Any]]) -> MeshError:
+    """The error if none of some meshes could be described."""
+    first = failed[0]["error"] if failed else "there are no meshes"
+    return MeshError(f"no mesh of {name} could be described, so no index was written; the first: {first}")
+
+
+def _by_name(labels: Labels | None, names: Sequence[str]) -> Mapping[str, str] | AnyPath | None:
+    """Classes by name, if they are given in the order of the names."""
+    if labels is None or isinstance(labels, (str, os.PathLike, Mapping)):
+        return labels
+    if len(labels) != len(names):
+        raise OptionError(f"labels= has {len(labels)} classes for {len(names)} shapes; give one for each")
+    return {name: str(label) for name, label in zip(names, labels, strict=True) if label}
 
 
 @contextmanager
 def in_files(meshes: Meshes, index: AnyPath, labels: Labels | None, *, keep: bool, add: bool = False) -> Iterator[_Files]:
-    """Meshes as files: those in memory are in a folder beside the index, as long as they are needed or kept."""
+    """Meshes as files, their classes, and those that are none. Those in memory are in a folder beside the index, as long as needed or kept."""
     if isinstance(meshes, (str, os.PathLike)):
         if labels is not None and not isinstance(labels, (str, os.PathLike, Mapping)):
             raise OptionError("labels= has no order for the meshes of a folder; give a dictionary from names to classes")
-        yield _Files(meshes, labels, [])
+        yield meshes, labels, []
         return
     if not isinstance(meshes, Iterable):
         raise OptionError(f"meshes={meshes!r} is not possible: give a folder, paths of mesh files, or meshes with names")
     folder = f"{os.fspath(index)}.meshes"
     is_kept = keep or os.path.exists(folder)
-    found = _Files([], labels, [])
     paths: list[AnyPath] = []
     written: list[str] = []
     known: dict[str, str] = {}
     names: list[str] = []
+    failed: list[dict[str, Any]] = []
     given: list[Any] = list(meshes.items()) if isinstance(meshes, Mapping) else list(meshes)
     try:
         for i, item in enumerate(given):
@@ -640,37 +604,23 @@ def in_files(meshes: Meshes, index: AnyPath, labels: Labels | None, *, keep: boo
                 written.append(_kept(_arrays(mesh), os.path.join(folder, *f"{name}.ply".split("/")), not add))
                 paths.append(written[-1])
             except MeshError as fault:
-                found.failed.append({"id": name, "path": name, "reason": "shape", "error": str(fault)})
+                failed.append({"id": name, "path": name, "reason": "shape", "error": str(fault)})
         if known and labels is not None:
             raise OptionError("labels= has no effect for meshes that come with a class; leave one of them out")
-        if labels is not None and not isinstance(labels, (str, os.PathLike, Mapping)):
-            if len(labels) != len(names):
-                raise OptionError(f"labels= has {len(labels)} classes for {len(names)} meshes; give one for each")
-            known = {name: str(label) for name, label in zip(names, labels, strict=True) if label}
-        if found.failed and not paths:
-            raise MeshError(f"no mesh could be described, so no index was written; the first, {names[0]}: {found.failed[0]['error']}")
+        if failed and not paths:
+            raise none_described(", ".join(names[:3]), failed)
+        found: AnyPath | list[AnyPath] = paths
         if not add and paths and len(written) == len(paths):
             # As of any folder, shapes whose files are gone are removed.
             for path in set(glob.glob(f"{glob.escape(folder)}/**/*.ply", recursive=True)) - set(written):
                 os.remove(path)
-            found.paths = folder
-        else:
-            found.paths = paths
-            deep = [name for name in names if "/" in name]
-            if deep:
-                raise OptionError(f"the name {deep[0]!r} is not possible here: only Index.build of meshes in memory has names with folders")
-        found.labels = known or labels
-        yield found
+            found = folder
+        elif deep := [name for name in names if "/" in name]:
+            raise OptionError(f"the name {deep[0]!r} is not possible here: only Index.build of meshes in memory has names with folders")
+        yield found, known or _by_name(labels, names), failed
     finally:
         if not is_kept:
             shutil.rmtree(folder, ignore_errors=True)
-
-
-@dataclass
-class _Files:
-    paths: AnyPath | list[AnyPath]
-    labels: Labels | None
-    failed: list[dict[str, Any]]
 
 
 def _stem(path: AnyPath) -> str:

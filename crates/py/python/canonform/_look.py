@@ -120,8 +120,6 @@ def figure(
         width, height: With `at`, the size in pixels.
         background: A color such as "#ffffff".
 
-    Raises `OptionError` if there are no pictures, or not as many titles or places.
-
     >>> both = canonform.figure([cat.picture(width=80), other.picture(width=80)], titles=["one", "other"])
     >>> both[1:4]
     b'PNG'

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform, _html
 from ._arrays import Floats, Ints, numeric, on_vertices, straight
-from ._operators import Eigenbasis, FacePoint
+from ._operators import Eigenbasis, FacePoint, face_points
 from ._look import Look, drawn, to_the_right
 from ._methods import Geodesic, options_of
 from ._settings import Call, running, some_whole, unmasked
@@ -40,10 +40,6 @@ class MappedPoints(ByValue):
         faces: The face that each lies in, or -1 if the repair dropped the vertex: shape (n,). `valid` is the mask of the others.
         corners: The vertices of that face: shape (n, 3).
         weights: The weights of these vertices, with sum 1; NaN for dropped vertices: shape (n, 3).
-
-    >>> points = found.best.points()
-    >>> points.interpolate(other.vertices).shape
-    (1000, 3)
     """
 
     faces: Ints
@@ -58,14 +54,10 @@ class MappedPoints(ByValue):
     @property
     def at(self) -> list[FacePoint | None]:
         """The points as sources of distances and ends of paths; `None` for dropped vertices."""
-        pairs = zip(self.faces.tolist(), self.weights.tolist(), strict=True)
-        return [None if face < 0 else FacePoint(face, (u, v, w)) for face, (u, v, w) in pairs]
+        return [None if point.face < 0 else point for point in face_points(self.faces, self.weights)]
 
     def interpolate(self, values: ArrayLike) -> Floats:
-        """The `values` of the vertices of that surface, shape (m,) or (m, d), at the points; NaN for dropped vertices.
-
-        Raises `OptionError` if there is not one row for each vertex.
-        """
+        """The `values` of the vertices of that surface, shape (m,) or (m, d), at the points; NaN for dropped vertices."""
         sides = ("m",) if np.ndim(values) == 1 else ("m", "d")
         array = numeric("values", values, sides)
         weights = self.weights if array.ndim == 1 else self.weights[:, :, None]
@@ -93,9 +85,6 @@ class SurfaceMap(Stored):
         confidence: How likely this map is the right one of its kind, and not the next best; below 0.7 it is uncertain.
         alternative: The next best map of this kind, unless the confidence is 0.9 or more: front and back may be exchanged.
         part: "first" or "second", the surface that is a part of the other; `None` if both are mapped as wholes.
-
-    >>> found.best.vertices.shape, found.best.kind in ("direct", "mirrored")
-    ((1000,), True)
     """
 
     def __init__(
@@ -115,10 +104,8 @@ class SurfaceMap(Stored):
         self.part: Part | None = report.get("part", {}).get("part")
         self._shapes, self._landmarks, self._settings = shapes, landmarks, settings
         self._points: dict[str, MappedPoints] = {}
-        other = arrays[1] if len(arrays) > 1 else None
-        self.alternative: SurfaceMap | None = None
-        if other is not None:
-            self.alternative = SurfaceMap(report["alternative"], [other], shapes, landmarks, settings)
+        others = [SurfaceMap(report["alternative"], [other], shapes, landmarks, settings) for other in arrays[1:] if other is not None]
+        self.alternative: SurfaceMap | None = others[0] if others else None
 
     @property
     def valid(self) -> NDArray[np.bool_]:
@@ -131,8 +118,6 @@ class SurfaceMap(Stored):
         """The map of functions, a square matrix, smaller for a part: column j has the coefficients of the j-th eigenfunction of `b`,
         pulled back to `a`, in the eigenfunctions of `a`. The method `bases` gives these, by default all; `n_eigenfunctions` is how many.
         With `bases=` it is written in these of `a` and `b`.
-
-        Raises `OptionError` if the map has fewer eigenfunctions.
         """
         if bases is not None:
             a, b = bases
@@ -142,10 +127,7 @@ class SurfaceMap(Stored):
         return self._functional[:rows, :columns].copy()
 
     def bases(self, n_eigenfunctions: int | None = None, **call: Unpack[Call]) -> tuple[Eigenbasis, Eigenbasis]:
-        """The `n_eigenfunctions` of `a` and of `b` that `functional` is written in, of both surfaces scaled to unit area.
-
-        Raises `OptionError` if the map has fewer eigenfunctions.
-        """
+        """The `n_eigenfunctions` of `a` and of `b` that `functional` is written in, of both surfaces scaled to unit area."""
         counts = self._counts(n_eigenfunctions)
         with running(call):
             found = [_canonform.map_basis(shape._inner, self._settings) for shape in self._shapes]
@@ -198,11 +180,6 @@ class SurfaceMap(Stored):
                 segment: the label of the largest weight, or that of the face.
             to: The surface that they go to. The result has a row for each of its vertices or faces, or values at its corners. Of those
                 that the repair dropped, numbers are NaN or -1, and other labels are empty.
-
-        Raises `OptionError` if there is not one row for each vertex or face.
-
-        >>> found.best.transfer(cat.distances(0)).shape
-        (1000,)
         """
         with running(call):
             return self._carried(values, _side("to", to))
@@ -261,17 +238,14 @@ class SurfaceMap(Stored):
         functional = self._functional[:k, :k] @ next._functional[:k, :k]
         kinds = {self.kind, next.kind}
         kind = "unoriented" if "unoriented" in kinds else "mirrored" if len(kinds) == 2 else "direct"
-        first, second = self.agreement, next.agreement
-        agreement = None if first is None or second is None else first * second
         report = {
             "kind": kind,
             "distortion": self.distortion + next.distortion,
-            "agreement": agreement,
+            "agreement": None if self.agreement is None or next.agreement is None else self.agreement * next.agreement,
             "confidence": self.confidence * next.confidence,
         }
-        shapes = (self._shapes[0], next._shapes[1])
-        nothing = np.empty((0, 2), dtype=np.int64)
-        return SurfaceMap(report, [(vertices, confidence, functional, None)], shapes, nothing, self._settings)
+        shapes, landmarks = (self._shapes[0], next._shapes[1]), np.empty((0, 2), dtype=np.int64)
+        return SurfaceMap(report, [(vertices, confidence, functional, None)], shapes, landmarks, self._settings)
 
     def _colors(self, colors: NDArray[np.uint8]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Colors of the first surface, and those that the map carries to the second: gray where it is not to be relied on."""
@@ -317,9 +291,6 @@ class Match(Stored):
     Attributes:
         maps: At most two maps, of different kinds.
         seconds: The time of the search, after both surfaces were prepared.
-
-    >>> found.best is found.maps[0]
-    True
     """
 
     def __init__(
@@ -357,8 +328,6 @@ class Match(Stored):
             kind: The kind of the map, by default that of `best`.
             n_lines: How many vertices, spread evenly, are joined to their partners by lines.
             look: Other keywords of `Look`; the picture is twice as wide as high by default.
-
-        Raises `OptionError` if there is no map of this kind.
 
         >>> found.picture(n_lines=4, width=80)[1:4]
         b'PNG'

@@ -74,9 +74,6 @@ class Nystrom(_Regularized):
             eigenvalue, which depends on the unit of length.
         sampling: How landmarks are chosen: "farthest", each the farthest from those before it; "random", "min-variance" or "max-variance".
         first: The first landmark, a vertex. By default the one farthest from vertex 0; with other samplings it is drawn with the seed.
-
-    >>> cat.canonical_form(40, method=canonform.Nystrom(rank=9)).report["rank"]
-    9
     """
 
     _name = "nmds"
@@ -88,9 +85,6 @@ class Landmark(_Sampled):
 
     Attributes:
         sampling, first: How landmarks are chosen, see `Nystrom`.
-
-    >>> cat.canonical_form(40, method=canonform.Landmark(sampling="random"), seed=1).report["method"]
-    'landmark'
     """
 
     _name = "landmark"
@@ -104,9 +98,6 @@ class Spectral(_Sampled):
         n_eigenfunctions: Number of eigenfunctions of the Laplacian.
         mu: Weight of the distances against smoothness, for a surface of unit area; `math.inf` fits the distances exactly.
         sampling, first: How landmarks are chosen, see `Nystrom`.
-
-    >>> cat.canonical_form(40, method=canonform.Spectral(n_eigenfunctions=50)).report["method"]
-    'spectral'
     """
 
     _name = "spectral"
@@ -123,9 +114,6 @@ class KernelPca(_Sampled):
         sigma: Width of the kernel: "mean", "median" or "max" of the measured distances, or a length in mesh units.
         rank: Eigenpairs of the kernel of the landmarks to keep, by default half.
         sampling, first: How landmarks are chosen, see `Nystrom`.
-
-    >>> cat.canonical_form(40, method=canonform.KernelPca(sigma="median")).report["method"]
-    'kpca'
     """
 
     _name = "kpca"
@@ -142,9 +130,6 @@ class Smacof(_Regularized):
         max_iterations: Most steps.
         tolerance: The last step reduces the stress by less than this share.
         regularization, rank, alpha, sampling, first: Of the start, see `Nystrom`.
-
-    >>> cat.canonical_form(40, method=canonform.Smacof(max_iterations=5)).report["method"]
-    'smacof'
     """
 
     _name = "smacof"

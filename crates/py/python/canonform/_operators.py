@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ._arrays import Floats, Ints, VertexValues, numeric, on_vertices
-from ._settings import number, numbers, whole
+from ._arrays import Floats, Ints, VertexValues, numbers, numeric, on_vertices
+from ._settings import number, whole
 from ._stored import AsArray, ByValue
 from .errors import OptionError
 
@@ -22,10 +22,6 @@ class EdgePoint:
         start: The vertex at one end.
         end: The vertex at the other.
         t: Where the point is, from 0 at the start to 1 at the end.
-
-    >>> a, b = map(int, cat.edges[0])
-    >>> float(cat.distances(canonform.EdgePoint(a, b)).min()) > 0
-    True
     """
 
     start: int
@@ -55,6 +51,11 @@ class FacePoint:
         return f"f{self.face}@{':'.join(repr(float(weight)) for weight in self.weights)}"
 
 
+def face_points(faces: Ints, weights: Floats) -> list[FacePoint]:
+    """Points of faces, by the weights of their corners."""
+    return [FacePoint(face, (u, v, w)) for face, (u, v, w) in zip(faces.tolist(), weights.tolist(), strict=True)]
+
+
 def parsed(text: str) -> int | EdgePoint | FacePoint:
     """The point that text stands for."""
     place, _, share = text.partition("@")
@@ -76,9 +77,6 @@ class ClosestPoints(AsArray, ByValue):
         distances: How far they are, in mesh units: shape (k,).
         faces: The face that each lies in: shape (k,).
         weights: The weights of the corners of that face: shape (k, 3).
-
-    >>> cat.closest_point(cat.vertices[:3]).distances.round(6).tolist()
-    [0.0, 0.0, 0.0]
     """
 
     points: Floats
@@ -89,8 +87,7 @@ class ClosestPoints(AsArray, ByValue):
     @property
     def at(self) -> list[FacePoint]:
         """The points as sources of distances and ends of paths."""
-        pairs = zip(self.faces.tolist(), self.weights.tolist(), strict=True)
-        return [FacePoint(face, (a, b, c)) for face, (a, b, c) in pairs]
+        return face_points(self.faces, self.weights)
 
     def __repr__(self) -> str:
         return f"ClosestPoints({len(self)} points)"
@@ -105,11 +102,6 @@ class Eigenbasis(ByValue):
         functions: Eigenfunctions as columns, orthonormal with the areas around vertices: shape (n, k). NaN for vertices that the repair
             dropped.
         masses: The area around each vertex, in squared mesh units: shape (n,).
-
-    >>> basis = cat.eigenbasis(20)
-    >>> smooth = basis.synthesize(basis.project(cat.vertices))
-    >>> smooth.shape
-    (1000, 3)
     """
 
     values: Floats
@@ -123,8 +115,6 @@ class Eigenbasis(ByValue):
     def project(self, values: ArrayLike) -> Floats:
         """The coefficients in this basis, shape (k,) or (k, d), of functions with these `values`, shape (n,) or (n, d).
 
-        Raises `OptionError` if there is not one row for each vertex.
-
         >>> basis = cat.eigenbasis(20)
         >>> basis.project(basis.functions[:, 3]).round(6).tolist()[2:5]
         [0.0, 1.0, 0.0]
@@ -135,8 +125,6 @@ class Eigenbasis(ByValue):
 
     def synthesize(self, coefficients: ArrayLike) -> VertexValues:
         """The functions of `coefficients`, shape (k,) or (k, d), at the vertices.
-
-        Raises `OptionError` if there is not one row for each function.
 
         >>> basis = cat.eigenbasis(20)
         >>> bool(np.allclose(basis.synthesize(np.eye(20)[3]), basis.functions[:, 3]))
@@ -151,8 +139,6 @@ class Eigenbasis(ByValue):
             times, n_times: In squared mesh units; by default `n_times` of them, from the time of the last eigenfunction to that of the
                 first.
             scaled: Whether to divide each column by the trace of the kernel at that time, so that all times count alike.
-
-        Raises `OptionError` if times are not positive, or all functions are constant.
         """
         curved = self._curved()
         if times is None:
@@ -204,10 +190,7 @@ class Eigenbasis(ByValue):
         return on_vertices(self.functions.view(np.ndarray) ** 2 @ weights, writeable=False)
 
     def first(self, n_eigenfunctions: int) -> Eigenbasis:
-        """The first `n_eigenfunctions` of its functions.
-
-        Raises `OptionError` if it is not a whole number, 1 or more.
-        """
+        """The first `n_eigenfunctions` of its functions."""
         n = whole("n_eigenfunctions", n_eigenfunctions, 1)
         return Eigenbasis(self.values[:n], self.functions[:, :n].view(VertexValues), self.masses)
 

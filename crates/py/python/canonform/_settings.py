@@ -7,10 +7,10 @@ import sys
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from importlib import import_module
 from typing import Any, Literal, TypeAlias, TypedDict
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import _canonform
 from .errors import OptionError
@@ -90,18 +90,6 @@ def unmasked(name: str, values: Any) -> Any:
     return values
 
 
-def numbers(name: str, values: Any, least: float = -math.inf) -> NDArray[np.float64]:
-    """The finite numbers that an argument must be, one or several, larger than the least one."""
-    try:
-        found = np.atleast_1d(np.asarray(unmasked(name, values), dtype=np.float64))
-    except (TypeError, ValueError):
-        found = np.empty(0)
-    if found.ndim != 1 or not found.size or not np.isfinite(found).all() or found.min() <= least:
-        kind = "finite numbers" if least == -math.inf else f"finite numbers larger than {least:g}"
-        raise OptionError(f"{name}={values!r} is not possible: give {kind}")
-    return found
-
-
 def n_bytes(size: int | str) -> int:
     """A memory size such as 2_000_000_000 or "2G", in bytes."""
     if not isinstance(size, str):
@@ -120,9 +108,6 @@ class Shown(TypedDict, total=False):
     Attributes:
         progress: True shows a bar (needs the package tqdm); a function gets the stage, the steps done and all steps.
         threads: Number of threads, 0 for all cores; by default that of `set_threads`.
-
-    >>> cat.distances(0, threads=1).shape
-    (1000,)
     """
 
     progress: Progress
@@ -145,6 +130,14 @@ class Call(Shown, total=False):
     memory: int | str | None
 
 
+def optional(module: str, remedy: str) -> Any:
+    """A module of a package that not everybody has."""
+    try:
+        return import_module(module)
+    except ImportError as missing:
+        raise ImportError(remedy) from missing
+
+
 def warned(message: str, kind: type[Warning]) -> None:
     """Warns at the line that called this package."""
     frame, level = sys._getframe(1), 2
@@ -160,8 +153,6 @@ def set_threads(n: int) -> None:
 
     Args:
         n: The number, 0 for all cores.
-
-    Raises `OptionError` if it is not a whole number, 0 or more.
 
     >>> canonform.set_threads(2)
     >>> canonform.threads()
@@ -196,16 +187,10 @@ def running(call: Call | Shown) -> Iterator[None]:
 @contextmanager
 def shown(progress: Progress) -> Iterator[Callable[[str, int, int], None] | None]:
     """What the Rust side calls to show progress."""
-    if callable(progress):
-        yield progress
+    if callable(progress) or not progress:
+        yield progress or None
         return
-    if not progress:
-        yield None
-        return
-    try:
-        from tqdm.auto import tqdm
-    except ImportError as missing:
-        raise ImportError("progress=True needs the package tqdm (`pip install tqdm`); or pass a function") from missing
+    tqdm = optional("tqdm.auto", "progress=True needs the package tqdm (`pip install tqdm`); or pass a function").tqdm
     bar: Any = None
     current = ""
 

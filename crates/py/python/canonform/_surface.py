@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar, Unpack, overload
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, Unpack, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,7 +20,7 @@ from ._look import Look, drawn
 from ._methods import Embedding, Geodesic, options_of
 from ._operators import ClosestPoints, EdgePoint, Eigenbasis, FacePoint, parsed
 from ._settings import (
-    Call, Components, Landmarks, SignatureKind, StressChoice, Weld, number, numbers, running, some_whole, unmasked,
+    Call, Components, Landmarks, SignatureKind, StressChoice, Weld, number, optional, running, some_whole, unmasked,
     warned, whole, word,
 )  # fmt: skip
 from ._stored import AsArray, ByValue, Constant
@@ -28,7 +28,6 @@ from ._view import SurfaceView, scene
 from .errors import MeshError, OptionError, PointError, SurfaceLossWarning
 
 if TYPE_CHECKING:
-    import pyvista
     from scipy import sparse
 
 Point: TypeAlias = int | np.integer[Any] | EdgePoint | FacePoint | str
@@ -38,13 +37,8 @@ Points: TypeAlias = list[Point] | tuple[Point, ...] | range | Ints
 """Several points."""
 
 
-_T = TypeVar("_T")
-
 _MOST_DROPPED = 0.01
 """Losing more of a surface is a warning."""
-
-_MOST_KEPT = 8
-"""Kernels and matrices that a surface keeps; the oldest goes when there are more."""
 
 
 def distance_methods() -> dict[str, str]:
@@ -57,20 +51,12 @@ def distance_methods() -> dict[str, str]:
 
 
 def embedding_methods() -> dict[str, str]:
-    """Methods that turn distances into coordinates: names, and what they compute.
-
-    >>> "smacof" in canonform.embedding_methods()
-    True
-    """
+    """Methods that turn distances into coordinates: names, and what they compute."""
     return dict(_canonform.EMBEDDING_METHODS)
 
 
 def signature_kinds() -> list[str]:
-    """Kinds of signatures that `Surface.signature` computes, besides "fused".
-
-    >>> "shape-dna" in canonform.signature_kinds()
-    True
-    """
+    """Kinds of signatures that `Surface.signature` computes, besides "fused"."""
     return list(_canonform.SIGNATURE_KINDS)
 
 
@@ -81,9 +67,6 @@ class RepairReport(dict[str, Any]):
 
     Attributes:
         lines: One line for each kind of change; empty if nothing was changed.
-
-    >>> str(cat.repair_report)
-    'nothing to repair'
     """
 
     def __init__(self, report: dict[str, Any], lines: list[str]) -> None:
@@ -103,12 +86,6 @@ class Path(AsArray, ByValue):
         at: The point of the mesh that each of them is: the number of a vertex, or a point of an edge or face.
         along: The distance of each from the start, along the path, in mesh units: shape (k,).
         length: Its length, in mesh units.
-
-    >>> path = cat.path(0, 500)
-    >>> path
-    Path(length=..., points=..., from 0 to 500)
-    >>> bool(np.isclose(path.along[-1], path.length))
-    True
     """
 
     points: Floats
@@ -131,9 +108,6 @@ class RepairedMesh(ByValue):
         faces: Its faces: shape (l, 3).
         to_input: For each of its vertices, the vertex of the input that it was, the first of those that were merged: shape (k,).
         from_input: For each vertex of the input, the vertex that it became, or -1 if the repair dropped it: shape (n,).
-
-    >>> cat.repaired
-    RepairedMesh(1000 vertices, 1996 faces)
     """
 
     vertices: Floats
@@ -148,8 +122,7 @@ class RepairedMesh(ByValue):
 class Surface(Constant):
     """A triangle mesh, repaired, with everything that was prepared on it.
 
-    Preparing a solver takes longer than one run of it, so it is kept: keep the surface, and call it as often as you like, from several
-    threads if you want.
+    Preparing a solver takes longer than one run of it, so keep the surface, and call it as often as you like, also from several threads.
 
     Args:
         mesh: The vertices: an array of shape (n, 3), of any type of numbers, in any unit of length. Or, without `faces`: vertices and faces
@@ -164,20 +137,10 @@ class Surface(Constant):
         format: The format of bytes, or of an open file without a name, such as "ply". Otherwise the extension tells it.
 
     Raises `MeshError` if it is not a mesh with finite coordinates.
-    Raises `MissingFileError`, `FileError` if a file cannot be read.
 
     >>> square = canonform.Surface(np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]]))
     >>> square.distances(0).round(6).tolist()
     [0.0, 1.0, 1.414214, 1.0]
-
-    A point cloud:
-
-    >>> i = np.arange(2000) + 0.5
-    >>> height, turn = 1 - 2 * i / 2000, i * np.pi * (1 + 5**0.5)
-    >>> radius = np.sqrt(1 - height**2)
-    >>> ball = canonform.Surface(np.column_stack([radius * np.cos(turn), radius * np.sin(turn), height]))
-    >>> bool(abs(ball.distances(0, geodesic="exact").max() - np.pi) < 0.02), bool(abs(ball.area - 4 * np.pi) < 0.1)
-    (True, True)
     """
 
     _inner: _canonform.Surface
@@ -227,14 +190,6 @@ class Surface(Constant):
     def _restore(self, state: dict[str, Any]) -> None:
         mesh = (state[key] for key in ("vertices", "faces", "repair", "content"))
         self._inner, self._name, self._notes = _canonform.Surface.restore(*mesh), state["name"], state["notes"]
-
-    def _once(self, make: Callable[[], _T], *key: Any) -> _T:
-        """What was made for this key before, or what is made now and kept."""
-        kept: dict[tuple[Any, ...], _T] = self.__dict__.setdefault("_kept", {})
-        made = kept[key] if key in kept else make()
-        while len(kept) >= _MOST_KEPT and key not in kept:
-            kept.pop(next(iter(kept)), None)
-        return kept.setdefault(key, made)
 
     @property
     def n_vertices(self) -> int:
@@ -302,8 +257,6 @@ class Surface(Constant):
                 `FastMarching` with options.
             max_distance: Do not look farther than this, in mesh units; vertices beyond are infinitely far.
 
-        Raises `PointError` if the mesh has no such point, or the repair dropped it.
-
         >>> distances = cat.distances([0, 10])
         >>> distances.shape, float(distances[10])
         ((1000,), 0.0)
@@ -320,8 +273,6 @@ class Surface(Constant):
         """Distances from each of several `sources` on its own, in parallel: shape (number of sources, n), in mesh units.
 
         Row i equals that of `distances` from one.
-
-        Raises `PointError` if the mesh has no such point, or the repair dropped it.
         """
         with running(call):
             return self._inner.distances_many(
@@ -364,8 +315,6 @@ class Surface(Constant):
             n_points: How many; fewer if the surface has fewer vertices.
             first: The first of them. By default, the vertex farthest from vertex 0, a tip of the surface.
             geodesic: As in `distances`.
-
-        Raises `PointError` if the mesh has no vertex `first`.
         """
         if first is not None and whole("first", first) >= self.n_vertices:
             raise PointError(f"first={first} is not possible: the mesh has {self.n_vertices} vertices, counted from 0")
@@ -382,8 +331,6 @@ class Surface(Constant):
             rank: Number of eigenpairs behind the estimates, by default half the landmarks; each takes 2 bytes per vertex.
             geodesic: How distances are measured, as in `distances`. Only "exact" certifies the bounds; with others they are widened by the
                 error that was measured on this surface.
-
-        Raises `OptionError`, `LimitError` if an option is not possible, or a limit does not suffice.
         """
         with running(call):
             inner = _canonform.DistanceField.build(
@@ -442,11 +389,6 @@ class Surface(Constant):
                 shapes. Or one of "form-spectrum", "geodesic-spectrum", "shape-dna", "heat-kernel", "wave-kernel", "rigid".
             n_landmarks: Number of landmarks of the form, see `canonical_form`.
             size: Whether size counts; then all meshes need the same unit of length.
-
-        Raises `OptionError` if there is no such kind.
-
-        >>> cat.signature().shape == other.signature().shape
-        True
         """
         with running(call):
             return self._inner.signature(word("kind", kind), options_of(n_landmarks=n_landmarks, size=size))
@@ -466,7 +408,7 @@ class Surface(Constant):
         """
         own = self.repaired.to_input
         with running(call):
-            matrix = self._operators()[0]
+            matrix = self._operators[0]
             return matrix[own][:, own] if repaired else matrix.copy()
 
     def mass(self, *, repaired: bool = False, **call: Unpack[Call]) -> sparse.dia_array:
@@ -479,26 +421,21 @@ class Surface(Constant):
         """
         own = self.repaired.to_input
         with running(call):
-            areas = self._operators()[1][own]
+            areas = self._operators[1][own]
             masses = np.ones(self.n_vertices)
             masses[own] = areas
             return _sparse().diags_array(areas if repaired else masses)
 
+    @cached_property
     def _operators(self) -> tuple[sparse.csr_array, Floats]:
         """The stiffness matrix, and the areas around the vertices."""
-
-        def made() -> tuple[sparse.csr_array, Floats]:
-            rows, columns, values, masses = _canonform.laplacian(self._inner)
-            return _sparse().coo_array((values, (rows, columns)), shape=(self.n_vertices, self.n_vertices)).tocsr(), masses
-
-        return self._once(made, "operators")
+        rows, columns, values, masses = _canonform.laplacian(self._inner)
+        return _sparse().coo_array((values, (rows, columns)), shape=(self.n_vertices, self.n_vertices)).tocsr(), masses
 
     def eigenbasis(self, n_eigenfunctions: int = 100, **call: Unpack[Call]) -> Eigenbasis:
         """The `n_eigenfunctions` smallest eigenvalues of the intrinsic Laplacian, and their eigenfunctions.
 
         Fewer if the surface has fewer vertices. They are kept: the next call takes the first of them, and finds more only if needed.
-
-        Raises `OptionError` if it is not a whole number, 1 or more.
         """
         n = whole("n_eigenfunctions", n_eigenfunctions, 1)
         with running(call):
@@ -511,8 +448,8 @@ class Surface(Constant):
     def hks(
         self, times: ArrayLike | None = None, *, n_times: int = 16, scaled: bool = False, n_eigenfunctions: int = 100, **call: Unpack[Call]
     ) -> VertexValues:
-        """The heat kernel signature of every vertex, `Eigenbasis.hks` of `n_eigenfunctions`. It is kept, and not writable."""
-        return self._kernels(Eigenbasis.hks, "times", times, n_eigenfunctions, call, n_times=n_times, scaled=scaled)
+        """The heat kernel signature of every vertex, `Eigenbasis.hks` of `n_eigenfunctions`. Not writable."""
+        return self.eigenbasis(n_eigenfunctions, **call).hks(times, n_times=n_times, scaled=scaled)
 
     def wks(
         self,
@@ -524,16 +461,8 @@ class Surface(Constant):
         n_eigenfunctions: int = 100,
         **call: Unpack[Call],
     ) -> VertexValues:
-        """The wave kernel signature of every vertex, `Eigenbasis.wks` of `n_eigenfunctions`. It is kept, and not writable."""
-        return self._kernels(Eigenbasis.wks, "energies", energies, n_eigenfunctions, call, n_energies=n_energies, sigma=sigma, scaled=scaled)
-
-    def _kernels(
-        self, kind: Callable[..., VertexValues], name: str, at: ArrayLike | None, n: int, call: Call, **options: Any
-    ) -> VertexValues:
-        """Kernels, kept by their arguments."""
-        key = None if at is None else numbers(name, at).tobytes()
-        with running(call):
-            return self._once(lambda: kind(self.eigenbasis(n), at, **options), name, key, n, *options.values())
+        """The wave kernel signature of every vertex, `Eigenbasis.wks` of `n_eigenfunctions`. Not writable."""
+        return self.eigenbasis(n_eigenfunctions, **call).wks(energies, n_energies=n_energies, sigma=sigma, scaled=scaled)
 
     @cached_property
     def _face_vectors(self) -> Floats:
@@ -584,8 +513,6 @@ class Surface(Constant):
         Without values, the sparse matrix, shape (3 m, n), by which they are multiplied. On faces without area, its rows are empty, and
         gradients are NaN.
 
-        Raises `OptionError` if there is not one number for each vertex.
-
         >>> slopes = np.linalg.norm(cat.gradient(cat.distances(0)), axis=1)
         >>> bool(abs(np.median(slopes) - 1) < 0.1)
         True
@@ -593,15 +520,10 @@ class Surface(Constant):
         if values is not None:
             array = numeric("values", values, (self.n_vertices,))
             return on_vertices(np.einsum("fk,fkx->fx", array[self.faces], self._slopes))
-
-        def made() -> sparse.csr_array:
-            n_faces, slopes = self.n_faces, np.where(np.isfinite(self._slopes), self._slopes, 0)
-            rows = np.arange(3 * n_faces).reshape(n_faces, 1, 3) + np.zeros((1, 3, 1), dtype=np.int64)
-            columns = np.broadcast_to(self.faces[:, :, None], slopes.shape)
-            entries = slopes.ravel(), (rows.ravel(), columns.ravel())
-            return _sparse().coo_array(entries, shape=(3 * n_faces, self.n_vertices)).tocsr()
-
-        return self._once(made, "gradient").copy()
+        slopes = np.where(np.isfinite(self._slopes), self._slopes, 0)
+        rows, columns = np.broadcast_arrays(np.arange(3 * self.n_faces).reshape(-1, 1, 3), self.faces[:, :, None])
+        entries = slopes.ravel(), (rows.ravel(), columns.ravel())
+        return _sparse().coo_array(entries, shape=(3 * self.n_faces, self.n_vertices)).tocsr()
 
     @overload
     def divergence(self) -> sparse.csr_array: ...
@@ -610,40 +532,28 @@ class Surface(Constant):
     def divergence(self, vectors: ArrayLike | None = None) -> sparse.csr_array | VertexValues:
         """The divergence of `vectors` on faces, shape (m, 3), integrated over the area around each vertex: shape (n,). Needs SciPy.
 
-        Without vectors, the sparse matrix, shape (n, 3 m), by which they are multiplied. Divided by the areas around the vertices, the diagonal of `mass`, it is a density. `divergence() @ gradient()` has minus the
-        cotangents of the faces as they are.
-
-        Raises `OptionError` if there is not one vector for each face.
+        Without vectors, the sparse matrix, shape (n, 3 m), by which they are multiplied. Divided by the diagonal of `mass`, it is a density.
+        `divergence() @ gradient()` has minus the cotangents of the faces as they are.
 
         >>> G, D = cat.gradient(), cat.divergence()
         >>> (D @ G).shape, bool(abs((D @ G).sum()) < 1e-9)
         ((1000, 1000), True)
         """
-
-        def made() -> sparse.csr_array:
-            return (-self.gradient().T.multiply(np.repeat(self.areas, 3))).tocsr()
-
-        matrix = self._once(made, "divergence")
+        matrix = (-self.gradient().T.multiply(np.repeat(self.areas, 3))).tocsr()
         if vectors is None:
-            return matrix.copy()
+            return matrix
         given = numeric("vectors", vectors, (self.n_faces, 3)).ravel()
         return on_vertices(np.asarray(matrix @ np.where(np.isfinite(given), given, 0)))
 
     def log_map(self, source: Point, *, max_distance: float = np.inf, **call: Unpack[Call]) -> VertexValues:
         """Where the vertices lie around a point, unrolled into the plane that touches there: shape (n, 2), in mesh units.
 
-        Row v is the logarithm of vertex v: the direction in which the shortest path from the source to it starts, as long as this
-        path. So its norm is `distances(source, geodesic="exact")[v]`, and neighborhoods of several points can be laid over each
-        other. NaN for vertices beyond `max_distance` and for those that the repair dropped.
+        Row v is the direction in which the shortest path from `source`, a point, to vertex v starts, as long as this path: its norm is
+        the exact distance. NaN for vertices beyond `max_distance` and for those that the repair dropped. Takes as long as exact distances.
 
         The first axis points, from a vertex, along the edge to its neighbor with the lowest number; from a point of an edge, to the
         end with the higher number; in a face, from its first corner to the second. The second axis is 90 degrees to the left, seen
         from the side on which the corners of faces run counterclockwise. Angles at an inner vertex are scaled to a full turn.
-
-        Takes as long as exact distances.
-
-        Args:
-            source: A vertex, an `EdgePoint` or a `FacePoint`.
 
         >>> square = canonform.Surface(np.array([[0, 0, 5], [1, 0, 5], [1, 1, 5], [0, 1, 5]]), np.array([[0, 1, 2], [0, 2, 3]]))
         >>> (square.log_map(0) + 0.0).round(6).tolist()
@@ -657,8 +567,6 @@ class Surface(Constant):
 
     def closest_point(self, points: ArrayLike, **call: Unpack[Call]) -> ClosestPoints:
         """For `points` in space, shape (3,) or (k, 3), the nearest points of the faces of the input that the repair kept.
-
-        Raises `PointError` if they are not points of finite coordinates.
 
         >>> near = cat.closest_point([0, 0, 50])
         >>> cat.distances(near.at).shape
@@ -677,24 +585,9 @@ class Surface(Constant):
         return ClosestPoints(places, distances, faces, weights)
 
     def write(self, path: str | os.PathLike[str], *, repaired: bool = False) -> None:
-        """Write the input, or the `repaired` mesh, to the file `path`. The extension tells the format; .ply keeps coordinates exactly.
-
-        Raises `FileError` if the file cannot be written.
-        """
+        """Write the input, or the `repaired` mesh, to the file `path`. The extension tells the format; .ply keeps coordinates exactly."""
         mesh = self.repaired if repaired else self
         _canonform.write(straight(mesh.vertices), straight(mesh.faces), os.fspath(path))
-
-    def to_pyvista(self, **values: ArrayLike) -> pyvista.PolyData:
-        """The input as a mesh of the package PyVista, with `values` by name: arrays of one row for each vertex, or each face.
-
-        >>> cat.to_pyvista(distance=cat.distances(0)).plot()   # doctest: +SKIP
-        """
-        import pyvista
-
-        mesh: pyvista.PolyData = pyvista.PolyData.from_regular_faces(self.vertices, self.faces)
-        for name, array in values.items():
-            (mesh.point_data if len(np.asarray(array)) == self.n_vertices else mesh.cell_data)[name] = np.asarray(array)
-        return mesh
 
     def picture(self, values: ArrayLike | None = None, **look: Unpack[Look]) -> bytes:
         """A shaded picture of the surface as the bytes of a PNG file, colored by `values` at its vertices if given.
@@ -716,10 +609,7 @@ class Surface(Constant):
         Args:
             values: One number for each vertex; faces at vertices whose number is not finite are gray.
             name: What the values are, for the color bar.
-            height: Height of the view, in pixels.
-            up: The axis that points up.
-
-        Raises `OptionError` if there is not one number for each vertex.
+            height, up: The height of the view in pixels, and the axis that points up.
 
         >>> cat.view(cat.distances(0), name="distance")
         SurfaceView('cat0', 1996 faces)
@@ -768,11 +658,7 @@ def _several(points: Any, n_vertices: int) -> list[Any]:
 
 
 def _sparse() -> Any:
-    try:
-        from scipy import sparse
-    except ImportError as missing:
-        raise ImportError("sparse matrices need the package SciPy (`pip install scipy`)") from missing
-    return sparse
+    return optional("scipy.sparse", "sparse matrices need the package SciPy (`pip install scipy`)")
 
 
 def _units(vectors: Floats) -> Floats:

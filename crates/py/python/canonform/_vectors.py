@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ._settings import optional
+
 if TYPE_CHECKING:
     import lance
     import pyarrow
@@ -24,7 +26,7 @@ Vectors = NDArray[np.float32]
 Near = tuple[float, str, str]
 """Squared distance, name, and shard of a shape."""
 
-_ABOUT = "canonform"
+ABOUT = "canonform"
 _NAME = "vector_idx"
 
 LEAST = 50_000
@@ -49,31 +51,20 @@ _BATCH = 8192
 
 def lance_module() -> Any:
     """The package that reads and writes the tables."""
-    try:
-        import lance
-    except ImportError as missing:
-        raise ImportError("tables of vectors need Lance: pip install 'canonform[lance]'") from missing
-    return lance
+    return optional("lance", "tables of vectors need Lance: pip install 'canonform[lance]'")
 
 
 @dataclass
 class About:
-    """What a table says about itself.
-
-    Attributes:
-        options: How the shapes were described.
-        classes: How well classes and distances of all shapes agree.
-        shards: Size and time of each index when it was read.
-        probes: Partitions that a search visits; 0 if it compares all vectors.
-        partitions: Partitions of the vectors.
-        recall: Share of the ten nearest that searches find, measured on queries that neither trained the partitions nor chose `probes`.
-    """
+    """What a table says about itself: how shapes were described, how well classes and distances agree, size and time of each index."""
 
     options: str = ""
     classes: dict[str, Any] | None = None
     shards: dict[str, list[int]] = field(default_factory=dict)
+    # What a search visits, 0 if it compares all vectors.
     probes: int = 0
     partitions: int = 0
+    # On queries that neither trained the partitions nor chose the probes.
     recall: float = 1.0
 
 
@@ -88,24 +79,14 @@ def opened(path: str, version: int | None = None) -> lance.LanceDataset:
     return found
 
 
-def writable(path: str) -> lance.LanceDataset:
-    """A table that the caller changes, and that is of the new version then."""
-    return lance_module().dataset(path)
-
-
 _OPENED: dict[str, Any] = {}
 
 
 def about(table: lance.LanceDataset) -> About:
     """What a table says about itself."""
-    stored = (table.schema.metadata or {}).get(_ABOUT.encode())
+    stored = (table.schema.metadata or {}).get(ABOUT.encode())
     known = {} if stored is None else json.loads(stored)
     return About(**{name: value for name, value in known.items() if name in About.__dataclass_fields__})
-
-
-def describe(table: lance.LanceDataset, facts: About) -> None:
-    """Makes a table say this about itself."""
-    table.update_schema_metadata({_ABOUT: json.dumps(vars(facts))})
 
 
 def rows(ids: Iterable[str], labels: Iterable[str], paths: Iterable[str], shard: str, vectors: Vectors) -> pyarrow.Table:
@@ -141,7 +122,7 @@ def create(path: str, pieces: Iterable[pyarrow.Table]) -> lance.LanceDataset:
     _OPENED.pop(path, None)
     reader = pa.RecordBatchReader.from_batches(first.schema, batches())
     lance_module().write_dataset(reader, path, mode="overwrite")
-    return writable(path)
+    return lance_module().dataset(path)
 
 
 def change(table: lance.LanceDataset, shard: str, now: pyarrow.Table) -> int:

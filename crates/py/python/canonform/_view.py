@@ -7,7 +7,7 @@ import os
 import sys
 from dataclasses import dataclass
 from html import escape
-from typing import Any, ClassVar, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,10 +34,6 @@ class SurfaceView(ByValue):
         title: What is shown.
         height: Height of the frame, in pixels.
         n_faces: Faces that are shown: surfaces of more than 100,000 are simplified by merging vertices in cells of a grid.
-
-    >>> view = cat.view()
-    >>> view.n_faces, view.picture[1:4]
-    (1996, b'PNG')
     """
 
     page: str
@@ -62,7 +58,7 @@ class SurfaceView(ByValue):
         return (
             f'<div style="position:relative;width:100%;max-width:{self.height * 4 // 3}px;height:{self.height}px">{image}'
             f'<iframe title="{escape(self.title)}" style="{layer}" sandbox="allow-scripts" '
-            f'srcdoc="{escape(self.page.replace(scripts, ""))}"></iframe></div>' + (_answers(scripts) if _Cell.carries() else "")
+            f'srcdoc="{escape(self.page.replace(scripts, ""))}"></iframe></div>' + (_answers(scripts) if _carries() else "")
         )
 
 
@@ -76,26 +72,24 @@ def _answers(scripts: str) -> str:
     )
 
 
-class _Cell:
-    """The cell of the notebook whose output has the scripts for all others: the first that showed a view, each time that it runs."""
+_carrier: list[str] = []
+"""The cell of the notebook whose output has the scripts for all others, the first that showed a view, and its last run."""
 
-    known: ClassVar[tuple[str, str] | None] = None
 
-    @classmethod
-    def carries(cls) -> bool:
-        """Whether the output that is made now has the scripts."""
-        shell: Any = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
-        try:
-            message = shell.get_parent()
-            run, cell = message["header"]["msg_id"], message["metadata"].get("cellId") or message["content"]["code"]
-        except (AttributeError, KeyError, TypeError):
-            # No notebook.
-            return True
-        # Outputs of Colab do not see each other.
-        if cls.known is None or cell == cls.known[0] and run != cls.known[1]:
-            cls.known = cell, run
-            return True
+def _carries() -> bool:
+    """Whether the output that is made now has the scripts: that of the carrier, each time that it runs."""
+    shell: Any = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
+    try:
+        message = shell.get_parent()
+        now = [message["metadata"].get("cellId") or message["content"]["code"], message["header"]["msg_id"]]
+    except (AttributeError, KeyError, TypeError):
+        # No notebook.
+        return True
+    # Outputs of Colab do not see each other.
+    if _carrier and (now[0] != _carrier[0] or now == _carrier):
         return "google.colab" in sys.modules
+    _carrier[:] = now
+    return True
 
 
 def scene(

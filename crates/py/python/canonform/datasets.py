@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Literal, Unpack
 
 import numpy as np
@@ -65,14 +66,15 @@ class Shape(ByValue):
     def _state(self) -> dict[str, Any]:
         return {name: value for name, value in vars(self).items() if name != "_surface"}
 
+    @cached_property
+    def _surface(self) -> Surface:
+        surface = Surface(self.vertices, self.faces)
+        surface._name = self.name
+        return surface
+
     def surface(self) -> Surface:
         """The mesh as a surface. The same object every time, so that what is prepared on it is kept."""
-        kept = self.__dict__.get("_surface")
-        if kept is None:
-            kept = Surface(self.vertices, self.faces)
-            kept._name = self.name
-            self.__dict__["_surface"] = kept
-        return kept
+        return self._surface
 
     def __repr__(self) -> str:
         return f"Shape({self.name!r}, {len(self.vertices)} vertices, {len(self.faces)} faces)"
@@ -108,16 +110,13 @@ def generate(
         n_vertices: Vertices of every shape, 1,000 to 1,000,000.
         seed: Of bodies, poses and triangulations.
 
-    Raises `OptionError` if there is no such family, pose or number of vertices.
-
     >>> [shape.name for shape in canonform.datasets.generate(["cat", "worm"], poses=[0, 2], n_vertices=1000)]
     ['cat0', 'cat2', 'worm0', 'worm2']
     """
     n_vertices, seed = whole("n_vertices", n_vertices), whole("seed", seed)
     known = families()
-    if not isinstance(family, Iterable):
-        raise OptionError(f"family={family!r} is not possible: use \"all\", {', '.join(map(repr, known))}")
-    names: list[str] = _DATASET if family == "all" else [family] if isinstance(family, str) else list(family)
+    one = isinstance(family, str) or not isinstance(family, Iterable)
+    names: list[Any] = _DATASET if family == "all" else [family] if one else list(family)
     made: list[Shape] = []
     with running(call):
         for name in names:
@@ -134,8 +133,6 @@ def generate(
 
 def write(shapes: Iterable[Shape], folder: str | os.PathLike[str], *, format: MeshFormat = "off") -> list[str]:
     """Write `shapes` into a `folder`, one file each, and return their paths. `format` is their extension.
-
-    Raises `FileError` if a file cannot be written.
 
     >>> shapes = canonform.datasets.generate("worm", poses=1, n_vertices=1000)
     >>> canonform.datasets.write(shapes, "worms", format="ply")

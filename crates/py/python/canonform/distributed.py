@@ -1,8 +1,7 @@
-"""Indexes, distances and searches on several machines, with Dask.
+"""Indexes and searches on several machines, with Dask.
 
-Describing shapes is the heavy part of an index, and every shape is described on its own: a pool of tasks, without any exchange between
-them. `build_index` cuts a collection into batches, a worker makes an index of each, and the client merges them. Workers need this package
-and must see the meshes and the index under the same paths.
+`build_index` cuts a collection into batches, a worker makes an index of each, and the client merges them. Workers need this package and
+must see the meshes and the index under the same paths.
 
     >>> from distributed import Client, LocalCluster                             # doctest: +SKIP
     >>> client = Client(LocalCluster(n_workers=2, threads_per_worker=1))          # doctest: +SKIP
@@ -34,12 +33,12 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 
 from . import _canonform, _vectors
-from ._index import AnyPath, Index, Labels, Meshes, SearchResults, dataset_of, in_files, label_file_of
+from ._index import AnyPath, Index, Labels, Meshes, SearchResults, dataset_of, in_files, label_file_of, none_described
 from ._methods import Embedding, Geodesic, options_of
-from ._settings import Call, Components, Landmarks, Progress, Ranking, Weld, running, shown, whole, word
+from ._settings import Call, Components, Landmarks, Progress, Ranking, Weld, optional, running, shown, whole, word
 from ._stored import Stored
 from ._surface import AnyMesh, Surface, surface_of
-from .errors import CanonformError, MeshError, NoSuchShapeError, OptionError, ShapeIndexError, TimeLimitError
+from .errors import CanonformError, NoSuchShapeError, OptionError, ShapeIndexError, TimeLimitError
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -98,20 +97,16 @@ def build_index(
     moves to another worker; nothing else is repeated. If the index holds just these meshes already, there is nothing to do.
 
     Args:
-        meshes, labels, n_landmarks, n_points, size, method, geodesic, components, weld, seed, max_vertices, timeout, memory: As in
-            `Index.build`.
+        meshes, labels, n_landmarks, n_points, size, method, geodesic, components, weld, seed, max_vertices, timeout, memory, progress: As
+            in `Index.build`.
         client: A `distributed.Client`, of any cluster: local, over SSH, or of Slurm through dask-jobqueue.
         out: The index. It is replaced.
         n_batches: About how many batches. By default 8 for each thread of the cluster.
         retries: How often a batch that raised an exception is tried again.
         shards: The folder of the small indexes; by default `out` with the ending `.shards`. Workers must see it. Other files in it stay.
         keep_shards: Whether to keep these indexes when all is done, so that the next run describes only batches that have changed.
-        progress: As in `Call`.
 
     Raises `MeshError` if there are no meshes, or none of them can be described.
-
-    >>> canonform.distributed.build_index("meshes", client, "shapes.canonform")   # doctest: +SKIP
-    Index('shapes.canonform', 30 shapes)
     """
     settings = options_of(
         n_landmarks=n_landmarks, n_points=n_points, size=size, method=method, geodesic=geodesic, components=components,
@@ -124,17 +119,17 @@ def build_index(
     try:
         # Workers do not see temporary files of the client, so lists of meshes and labels are beside the shards.
         with (
-            in_files(meshes, out, labels, keep=False) as files,
+            in_files(meshes, out, labels, keep=False) as (paths, known, unusable),
             TemporaryDirectory(prefix="canonform-", dir=place) as lists,
         ):
-            (dataset, name), label_file = dataset_of(files.paths, lists), label_file_of(files.labels, lists)
+            (dataset, name), label_file = dataset_of(paths, lists), label_file_of(known, lists)
             dataset = os.path.abspath(dataset)
             if label_file is not None and os.path.isfile(label_file) and os.path.dirname(label_file) != lists:
                 label_file = shutil.copy(label_file, lists)
             unchanged = _canonform.Index.build(dataset, out, label_file, True, None, None, True, settings) if os.path.exists(out) else None
             if unchanged is not None:
-                index, known = Index(out), json.loads(unchanged)
-                index.build_report = {key: known[key] for key in ("n_shapes", "described", "unchanged", "failed")} | {"batches": 0}
+                index, report = Index(out), json.loads(unchanged)
+                index.build_report = {key: report[key] for key in ("n_shapes", "described", "unchanged", "failed")} | {"batches": 0}
                 return index
             _dask()
             found = _canonform.list_folder(dataset, out, label_file)
@@ -144,11 +139,10 @@ def build_index(
             reports: list[tuple[str, dict[str, Any]]] = _mapped(
                 client, _describe, items, {"progress": progress}, retries, stage="shapes", weights=[len(batch) for batch in batches]
             )
-        failed = sorted((failure for _, report in reports for failure in report["failed"]), key=lambda failure: str(failure["id"]))
+        failed = sorted([*unusable, *(failure for _, report in reports for failure in report["failed"])], key=lambda failure: str(failure["id"]))
         written = sorted({path for path, _ in reports if os.path.exists(path)})
         if not written:
-            first = failed[0]["error"] if failed else "there are no meshes"
-            raise MeshError(f"no mesh of {name} could be described, so no index was written; the first: {first}")
+            raise none_described(name, failed)
         index = Index.merge(written, out)
         counts = {key: sum(report[key] for _, report in reports) for key in ("described", "unchanged")}
         index.build_report = {"n_shapes": len(index), **counts, "failed": failed, "batches": len(batches)}
@@ -169,19 +163,15 @@ def vector_table(shards: Iterable[AnyPath], table: AnyPath, *, client: Client | 
     all; `recall`: the share of the ten nearest vectors that searches find, on queries that did not decide about it.
 
     Call it again when indexes have changed: only their new and changed shapes are written, and searches that run meanwhile see the table
-    before or after. Beyond 50,000 shapes their vectors are divided into partitions and coded in a byte for eight numbers (IVF_PQ), and
+    before or after. Beyond 50,000 shapes their vectors are divided into partitions and coded in a byte for four numbers (IVF_PQ), and
     searches in held-out queries decide how many partitions are visited.
 
     Args:
-        shards: Indexes made with the same options, such as the parts of `canonform index build --shard`. No two have a shape of the same
-            name.
+        shards: Indexes made with the same options, without shapes of the same name, such as the parts of `Index.build(shard=...)`.
         table: The folder of the table. Paths of indexes are kept as seen from its own folder, so that both can move.
         client: A `distributed.Client` whose workers code the vectors. They must see the table under the same path.
 
     Raises `OptionError`, `ShapeIndexError` if an index of the table is left out, or two have a shape of the same name.
-
-    >>> canonform.distributed.vector_table(["shapes.canonform"], "shapes.lance")["n_shapes"]   # doctest: +SKIP
-    30
     """
     _vectors.lance_module()
     paths, uri = [os.path.abspath(path) for path in shards], os.path.abspath(table)
@@ -190,7 +180,7 @@ def vector_table(shards: Iterable[AnyPath], table: AnyPath, *, client: Client | 
     names = [os.path.relpath(path, os.path.dirname(uri)).replace(os.sep, "/") for path in paths]
     stamps = {name: list(_vectors.stamp(path)) for name, path in zip(names, paths, strict=True)}
     is_new = not os.path.exists(uri)
-    stored = None if is_new else _vectors.writable(uri)
+    stored = None if is_new else _vectors.lance_module().dataset(uri)
     facts = _vectors.About() if stored is None else _vectors.about(stored)
     if set(facts.shards) - set(names):
         gone = ", ".join(sorted(set(facts.shards) - set(names))[:3])
@@ -226,7 +216,7 @@ def vector_table(shards: Iterable[AnyPath], table: AnyPath, *, client: Client | 
             facts.probes, facts.recall = _vectors.calibrate(stored)
     if trains or new:
         facts.options, facts.shards = Index(paths[0])._inner.options, stamps
-        _vectors.describe(stored, facts)
+        stored.update_schema_metadata({_vectors.ABOUT: json.dumps(vars(facts))})
     return {"n_shapes": n, "changed": changed} | {name: getattr(facts, name) for name in ("partitions", "probes", "recall")}
 
 
@@ -252,29 +242,20 @@ def search(
     retries: int = 3,
     **call: Unpack[Call],
 ) -> SearchResults:
-    """Find the shapes nearest to a query in all indexes of a table, as `Index.search` does in one.
+    """Find the shapes nearest to a query in all indexes of a `table` of `vector_table`, as `Index.search` does in one.
 
-    Candidates come from the table. Their forms are aligned by tasks that open the index of each, and the best of all are the results. A
-    task whose worker is lost moves to another worker.
+    Candidates come from the table. Their forms are aligned by tasks that open the index of each, and the best of all are the results;
+    `report["recall"]` is the measured share of the ten nearest signatures that such a search finds.
 
     Args:
-        table: A table of `vector_table`.
         query: A surface, a mesh as `Surface` takes it, a mesh file, or the name of a shape. It is described by this process.
         k, explain: As in `Index.search`.
         rank: "plain", "part" or "forms", as in `Index.search`; the last two compare the query with every shape, where its index is.
-        client: A `distributed.Client` whose workers search. They must see the table, and the indexes under the same paths, and their meshes
-            if results are explained. By default this process searches.
+        client: A `distributed.Client` whose workers align forms. They must see the indexes under the same paths, and their meshes if
+            results are explained. By default this process does it.
         exact: Compare the signatures of all shapes, where their indexes are. The results are then those of one index of all shapes.
         where: The workers that see an index, by its path as in `vector_table`: addresses or names of hosts. By default all do.
         retries: How often a task that raised an exception is tried again.
-
-    Returns:
-        The results of `Index.search`; `report["recall"]` is the measured share of the ten nearest signatures that such a search finds.
-
-    Raises `OptionError`, `NoSuchShapeError` if an option is not possible, or the query is neither a file nor a shape of the table.
-
-    >>> canonform.distributed.search("shapes.lance", "cat.off")[0].id   # doctest: +SKIP
-    'cat0'
     """
     if rank == "graph":
         raise OptionError(
@@ -339,11 +320,6 @@ class _Search:
         name = os.path.basename(name) or surface._name or "the query"
         return _canonform.query_of_surface(surface._inner, self.facts.options, name, rank, explain), surface, name
 
-    def near(self, packed: str, n: int) -> list[_vectors.Near]:
-        """The shapes with the nearest vectors of the table."""
-        row = _vectors.padded(self.table, np.array(json.loads(packed)["shape"]["fused"], np.float32))
-        return _vectors.nearest(self.table, row, n, self.facts.probes)
-
     def report(self, packed: str, k: int, rank: str, explain: bool) -> dict[str, Any]:
         """The report on a query, without its components."""
         n, facts = self.table.count_rows(), self.facts
@@ -351,7 +327,8 @@ class _Search:
         asked: dict[str, list[str] | None] = dict.fromkeys(facts.shards)
         if rank == "plain" and not self.exact:
             candidates: dict[str, list[str]] = {}
-            for _, id, shard in self.near(packed, n_candidates):
+            row = _vectors.padded(self.table, np.array(json.loads(packed)["shape"]["fused"], np.float32))
+            for _, id, shard in _vectors.nearest(self.table, row, n_candidates, facts.probes):
                 candidates.setdefault(shard, []).append(id)
             asked = {**candidates}
         classes = json.dumps(facts.classes)
@@ -391,16 +368,31 @@ def _mapped(
     stage: str = "tasks",
     weights: Sequence[int] = (),
 ) -> list[Any]:
-    """The results of a task for each of these arguments, the first of which begin first, on workers or here."""
+    """The results of a task for each of these arguments, the first of which begin first, on workers or here.
+
+    After an error, the end of the time, or Ctrl-C, the other tasks are cancelled.
+    """
     if client is None:
         return [task(*item) for item in items]
     limits = {name: value for name, value in call.items() if name in ("timeout", "memory")}
-    at = workers or [None] * len(items)
-    tasks = [
-        client.submit(_within, limits, task, *item, workers=place, pure=False, retries=retries)
-        for item, place in zip(items, at, strict=True)
-    ]
-    return _gathered(client, tasks, weights or [1] * len(tasks), stage, call)
+    places = workers or [None] * len(items)
+    tasks = [client.submit(_within, limits, task, *item, workers=at, pure=False, retries=retries) for item, at in zip(items, places, strict=True)]
+    weight = dict(zip((task.key for task in tasks), weights or [1] * len(tasks), strict=True))
+    results: dict[str, Any] = {}
+    done, total, timeout = 0, sum(weight.values()), call.get("timeout")
+    try:
+        with shown(call.get("progress", False)) as update:
+            for future, result in _dask().as_completed(tasks, with_results=True, timeout=timeout):
+                results[future.key] = result
+                done += weight[future.key]
+                if update is not None:
+                    update(stage, done, total)
+    except BaseException as fault:
+        client.cancel(tasks)
+        if isinstance(fault, TimeoutError) and not isinstance(fault, CanonformError):
+            raise TimeLimitError(f"not finished within the time limit of {timeout:g} seconds; raise timeout=") from fault
+        raise
+    return [results[future.key] for future in tasks]
 
 
 def _within(limits: Call, task: Callable[..., Any], *arguments: Any) -> Any:
@@ -421,11 +413,7 @@ def _opened(path: str, _: tuple[int, int]) -> _canonform.Index:
 
 
 def _dask() -> Any:
-    try:
-        import distributed
-    except ImportError as missing:
-        raise ImportError("canonform.distributed needs Dask: pip install 'canonform[dask]'") from missing
-    return distributed
+    return optional("distributed", "canonform.distributed needs Dask: pip install 'canonform[dask]'")
 
 
 def _describe(
@@ -433,33 +421,9 @@ def _describe(
 ) -> tuple[str, dict[str, Any]]:
     """Makes the index of a batch, on a worker. Returns its path and report."""
     contents = _canonform.content_hashes([path for _, _, path in shapes])
-    name = _hash(settings, [(*shape, content) for shape, content in zip(shapes, contents, strict=True)])
-    path = os.path.join(place, f"{name}.canonform")
+    parts = settings, [(*shape, content) for shape, content in zip(shapes, contents, strict=True)]
+    path = os.path.join(place, f"{hashlib.sha256(json.dumps(parts, default=str).encode()).hexdigest()[:32]}.canonform")
     # An unfinished batch is resumed, and one that is there is recognized by the content of its meshes.
     names = {name for name, _, _ in shapes}
     report = _canonform.Index.build(dataset, path, label_file, False, None, names, False, settings)
     return path, json.loads(report)
-
-
-def _hash(*parts: Any) -> str:
-    return hashlib.sha256(json.dumps(parts, default=str).encode()).hexdigest()[:32]
-
-
-def _gathered(client: Client, tasks: list[Any], weights: Iterable[int], stage: str, call: Call) -> list[Any]:
-    """The results in the order of the tasks. After an error, the end of the time, or Ctrl-C, the other tasks are cancelled."""
-    weight = dict(zip((task.key for task in tasks), weights, strict=True))
-    results: dict[str, Any] = {}
-    done, total, timeout = 0, sum(weight.values()), call.get("timeout")
-    try:
-        with shown(call.get("progress", False)) as update:
-            for task, result in _dask().as_completed(tasks, with_results=True, timeout=timeout):
-                results[task.key] = result
-                done += weight[task.key]
-                if update is not None:
-                    update(stage, done, total)
-    except BaseException as fault:
-        client.cancel(tasks)
-        if isinstance(fault, TimeoutError) and not isinstance(fault, CanonformError):
-            raise TimeLimitError(f"not finished within the time limit of {timeout:g} seconds; raise timeout=") from fault
-        raise
-    return [results[task.key] for task in tasks]

@@ -59,8 +59,6 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         sampling: How landmarks are chosen: "farthest", each the farthest from those before it, or "random".
         regularization, rank, alpha: As in `Nystrom`; parameters here, since grids of scikit-learn change them one by one.
         random_state: For `sampling="random"`. Elsewhere in canonform a whole number, `seed`.
-        warm_start: Keep the distances from the landmarks, n p numbers, so that the next fit to the same points measures those from
-            further landmarks only: `form.set_params(n_landmarks=200).fit(X)`.
 
     Attributes:
         embedding_: Coordinates of the points of the fit, centered, in the unit of the distances: shape (n, n_components).
@@ -72,10 +70,8 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
 
     Distances along the arc of a circle, which are those of points on a line:
 
-    >>> import numpy as np
-    >>> from canonform import NystromMDS
     >>> angles = np.linspace(0, 3, 50)
-    >>> along = NystromMDS(n_landmarks=8, n_components=1, metric=lambda a, b: abs(a - b)).fit(angles)
+    >>> along = canonform.NystromMDS(n_landmarks=8, n_components=1, metric=lambda a, b: abs(a - b)).fit(angles)
     >>> new = along.transform(np.array([1.5]))
     >>> bool(abs(new[0, 0] - along.embedding_[[24, 25], 0].mean()) < 1e-9)
     True
@@ -100,7 +96,6 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         rank: int | None = None,
         alpha: float | Literal["paper"] | None = None,
         random_state: Any = None,
-        warm_start: bool = False,
     ) -> None:
         self.n_landmarks = n_landmarks
         self.n_components = n_components
@@ -111,15 +106,12 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         self.rank = rank
         self.alpha = alpha
         self.random_state = random_state
-        self.warm_start = warm_start
 
     def fit(self, X: Any, y: object = None, **call: Unpack[Call]) -> NystromMDS:
         """Choose landmarks and embed the points X.
 
         Args:
             X, y: The points, as the metric takes them; y is ignored.
-
-        Raises `OptionError`, `LimitError` if points or parameters cannot be used, or a limit does not suffice.
         """
         with _refused(), running(call):
             return self._fitted(X)
@@ -129,10 +121,7 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         n = len(X)
         if n < 2:
             raise OptionError(f"a metric space of 1 sample has no extent, and X has {n} sample(s); give at least 2")
-        known: _Landmarks | None = getattr(self, "_taken", None) if self.warm_start else None
-        taken = known if known is not None and known.continues(self, X) else _Landmarks(self, X)
-        self._taken = taken if self.warm_start else None
-        landmarks, columns = taken.first(whole("n_landmarks", self.n_landmarks, 1))
+        landmarks, columns = self._sampled(X, min(whole("n_landmarks", self.n_landmarks, 1), n))
         settings = {"n_components": self.n_components, "regularization": self.regularization, "rank": self.rank, "alpha": self.alpha}
         found = _canonform.nystrom(columns, landmarks.tolist(), settings)
         self.embedding_, self.eigenvalues_, self.negative_mass_, self.rank_, self._extension = found
@@ -140,6 +129,28 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         self._n_fitted = n
         self._landmark_points: Any = None if self.metric == "precomputed" else _items(X, landmarks)
         return self
+
+    def _sampled(self, X: Any, n: int) -> tuple[Ints, Floats]:
+        """Landmarks, n if there are so many different points, and the distances from each to all points, as columns."""
+        if self.sampling not in ("farthest", "random"):
+            raise OptionError(f"sampling={self.sampling!r} is not possible: use 'farthest' or 'random'")
+        is_random = self.sampling == "random"
+        # As on surfaces, the first is the point farthest from point 0, at a tip.
+        order = check_random_state(self.random_state).permutation(len(X)) if is_random else [self._measure(X, 0).argmax()]
+        landmarks = [int(i) for i in order]
+        _canonform.check_call(8 * len(X) * n)
+        columns, nearest = np.empty((len(X), n), order="F"), np.full(len(X), np.inf)
+        for j in range(n):
+            _canonform.check_call(columns.nbytes)
+            columns[:, j] = self._measure(X, landmarks[j])
+            if not is_random:
+                np.minimum(nearest, columns[:, j], out=nearest)
+                nearest[landmarks[j]] = 0
+                landmarks.append(int(nearest.argmax()))
+                # The other points repeat landmarks, up to the rounding of Euclidean distances by scikit-learn.
+                if not nearest[landmarks[-1]] > _ROUNDING * columns[:, 0].max():
+                    break
+        return np.array(landmarks[: j + 1], dtype=np.int64), columns[:, : j + 1]
 
     def fit_transform(self, X: Any, y: object = None, **call: Unpack[Call]) -> Floats:
         """Embed the points `X` as `fit` does, and return their coordinates: shape (n, n_components)."""
@@ -218,58 +229,3 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
 
 def _items(X: Any, indices: NDArray[np.int64]) -> Any:
     return X[indices] if isinstance(X, np.ndarray) else [X[i] for i in indices]
-
-
-class _Landmarks:
-    """Landmarks, and the distances from each of them to all points, one column for each. More begin with the same ones."""
-
-    def __init__(self, estimator: NystromMDS, X: Any) -> None:
-        if estimator.sampling not in ("farthest", "random"):
-            raise OptionError(f"sampling={estimator.sampling!r} is not possible: use 'farthest' or 'random'")
-        n = len(X)
-        self._sampling = estimator.sampling
-        self._measure: Callable[[int], Floats] = lambda i: estimator._measure(X, i)
-        self._order: Ints | None = None
-        if estimator.sampling == "random":
-            self._order = check_random_state(estimator.random_state).permutation(n).astype(np.int64)
-        else:
-            # As on surfaces, the first is the point farthest from point 0, at a tip.
-            self._next = int(np.argmax(self._measure(0)))
-        self._nearest = np.full(n, np.inf)
-        self._taken: list[int] = []
-        self._columns = np.empty((n, 0), order="F")
-        self._is_complete = False
-
-    def __getstate__(self) -> dict[str, Any]:
-        # The next fit says how to measure.
-        return {**self.__dict__, "_measure": None}
-
-    def continues(self, estimator: NystromMDS, X: Any) -> bool:
-        """Whether these are landmarks of the points X by the metric of the estimator; further ones are then measured by it."""
-        if self._sampling != estimator.sampling or len(X) != len(self._columns) or not self._taken:
-            return False
-        self._measure = lambda i: estimator._measure(X, i)
-        return bool(np.array_equal(self._measure(self._taken[0]), self._columns[:, 0]))
-
-    def first(self, n: int) -> tuple[Ints, Floats]:
-        """The first n landmarks, or as many as there are different points, and their columns."""
-        self._extend_to(n)
-        return np.array(self._taken[:n], dtype=np.int64), self._columns[:, :n]
-
-    def _extend_to(self, n: int) -> None:
-        n = min(n, len(self._columns))
-        _canonform.check_call(8 * len(self._columns) * max(n, len(self._taken)))
-        columns = np.empty((len(self._columns), max(n, len(self._taken))), order="F")
-        columns[:, : len(self._taken)] = self._columns
-        while len(self._taken) < n and not self._is_complete:
-            _canonform.check_call(columns.nbytes)
-            i = self._next if self._order is None else int(self._order[len(self._taken)])
-            columns[:, len(self._taken)] = self._measure(i)
-            np.minimum(self._nearest, columns[:, len(self._taken)], out=self._nearest)
-            self._nearest[i] = 0
-            self._taken.append(i)
-            if self._order is None:
-                self._next = int(np.argmax(self._nearest))
-                # The other points repeat landmarks, up to the rounding of Euclidean distances by scikit-learn.
-                self._is_complete = not self._nearest[self._next] > _ROUNDING * columns[:, 0].max()
-        self._columns = columns[:, : len(self._taken)]
