@@ -43,7 +43,7 @@ pub(super) const PARTS: f64 = 2.5;
 
 /// How far noise takes the farthest of 10,000 vertices, in multiples of its root mean square along one axis, over [`PARTS`]: 4.5 for
 /// normal noise, and as much again for what alignments follow.
-pub(super) const FARTHEST: f64 = 3.6;
+pub(super) const FARTHEST: f64 = 2.0 * 4.5 / PARTS;
 
 /// The error of flat triangles that counts, in multiples of the height of the arcs over them. The largest of 60 generated parts with
 /// circles of 12 to 64 segments, refined and decimated, is .96 (`cargo test -p tests --test laws -- invariants --nocapture`).
@@ -59,5 +59,8 @@ pub(super) const STANDARD_ERRORS: f64 = 4.0;
 
 /// Vertices on which a motion is checked first. Of a piece of another mesh, also the faces that are looked for in it, the candidates for
 /// each, and the least number of faces in common. Half and twice as many change no answer about pieces.
-/// Of a rim, the vertices that may be one.
+/// Of a rim, the vertices that may be one. Of components that differ, those that are aligned with a mesh.
 pub(super) const FEW: NonZero<usize> = NonZero::new(24).unwrap();
+
+/// Faces at whose corners two meshes are compared, images of a vertex and motions that are tried, at most. Limits of effort.
+pub(super) const MANY: usize = 2000;

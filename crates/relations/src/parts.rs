@@ -5,13 +5,11 @@ use rigid::{Alignment, Gap, align_surfaces};
 use serde::Serialize;
 
 use super::SIZE_OF_SURFACES;
+use super::calibration::FEW;
 use super::exact::{SameVertices, same_vertices};
 use super::geometry::MeshGeometry;
 use super::mesh_change::mesh_change;
 use super::same_surface::same_surface;
-
-/// Most different components that are aligned with a mesh.
-const MAX_ALIGNED: usize = 20;
 
 /// How often one mesh occurs among the components of the other.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -62,7 +60,7 @@ pub(super) fn occurrences(mesh: &MeshGeometry, whole: &MeshGeometry) -> Option<(
             }))
         });
         let copy = known.unwrap_or_else(|| {
-            let copy = copy_of(mesh, part, kinds.len() < MAX_ALIGNED);
+            let copy = copy_of(mesh, part, kinds.len() < FEW.get());
             kinds.push((part, copy));
             copy
         });

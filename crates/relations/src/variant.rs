@@ -8,16 +8,8 @@ use super::calibration::EXACT;
 use super::geometry::MeshGeometry;
 use super::numbers::in_four_digits;
 
-/// Dimensions that differ by less than this share are equal: arcs of few segments are measured a little too small. Half and twice
-/// as much change no answer.
-const EQUAL: f64 = 2e-3;
-
 /// No dimension of a variant differs by more than this factor: what differs more is another part.
 const MAX_CHANGE: f64 = 2.5;
-
-/// Surfaces this near to each other are variants even where their dimensions cannot be compared one by one: root mean
-/// square, relative to the size. A convention.
-const NEAR: f64 = 0.012;
 
 /// What is measured of a part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -152,9 +144,9 @@ fn extents(part: &MeshGeometry, directions: &[Vector3<f64>]) -> [f64; 3] {
     extents
 }
 
-/// In what two mechanical parts differ, if they are variants of one part. `rms` is how far their surfaces are apart, if
-/// they can be laid over each other at one size.
-pub(super) fn differences([a, b]: [&MeshGeometry; 2], rms: Option<f64>) -> Option<Vec<Difference>> {
+/// In what two mechanical parts differ, if they are variants of one part. Surfaces that `are_near` when laid over each other are
+/// variants even where their dimensions cannot be compared one by one.
+pub(super) fn differences([a, b]: [&MeshGeometry; 2], are_near: bool) -> Option<Vec<Difference>> {
     // Noise breaks planes and cylinders up, so that holes and steps of a noisy part are not those that it has.
     let is_exact = |part: &MeshGeometry| part.is_mechanical() && !part.has_noisy_planes();
     if !(is_exact(a) && is_exact(b)) {
@@ -162,7 +154,7 @@ pub(super) fn differences([a, b]: [&MeshGeometry; 2], rms: Option<f64>) -> Optio
     }
     let [a, b] = [a, b].map(Dimensions::new);
     let tolerance = EXACT * f64::max(a.size, b.size);
-    let differs = |x: f64, y: f64| (x - y).abs() > tolerance + EQUAL * f64::max(x, y);
+    let differs = |x: f64, y: f64| (x - y).abs() > tolerance;
     let mut found = Vec::new();
     // Of as many on either side.
     let mut compare = |what: Dimension, x: &[f64], y: &[f64]| {
@@ -188,12 +180,12 @@ pub(super) fn differences([a, b]: [&MeshGeometry; 2], rms: Option<f64>) -> Optio
     }
     if found.is_empty()
         && let (Some((first, _)), Some((second, _))) = (a.closed, b.closed)
-        && (first - second).abs() > EQUAL * f64::max(first, second)
+        && (first - second).abs() > EXACT * f64::max(first, second)
     {
         found.push(Difference { what: Dimension::Volume, first, second });
     }
     found.dedup();
     let same_parts = same_build && (same_holes || a.closed.map(|x| x.1) != b.closed.map(|x| x.1));
-    let is_variant = (same_parts || rms.is_some_and(|rms| rms < NEAR)) && is_near && !found.is_empty();
+    let is_variant = (same_parts || are_near) && is_near && !found.is_empty();
     is_variant.then_some(found)
 }
