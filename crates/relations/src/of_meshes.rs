@@ -196,7 +196,8 @@ impl Relation {
             changes.push(Change::Cut);
             return self.found(RelationKind::PartOf, CUT, changes, scale, MAX_ROUNDING);
         }
-        if let Some(differences) = differences(meshes, self.evidence.surface_gap.is_some()) {
+        let rms = self.evidence.surface_gap.map(|gap| gap.rms);
+        if let Some(differences) = differences(meshes, rms) {
             self.evidence.differences = differences;
             self.changes.clear();
             return Self { kind: RelationKind::Variant, confidence: VARIANT, ..self };

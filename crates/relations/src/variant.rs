@@ -11,6 +11,10 @@ use super::numbers::in_four_digits;
 /// No dimension of a variant differs by more than this factor: what differs more is another part.
 const MAX_CHANGE: f64 = 2.5;
 
+/// Surfaces this near to each other are variants even where their dimensions cannot be compared one by one: root mean
+/// square, relative to the size. A convention.
+const NEAR: f64 = 0.012;
+
 /// What is measured of a part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -144,9 +148,9 @@ fn extents(part: &MeshGeometry, directions: &[Vector3<f64>]) -> [f64; 3] {
     extents
 }
 
-/// In what two mechanical parts differ, if they are variants of one part. Surfaces that `are_near` when laid over each other are
-/// variants even where their dimensions cannot be compared one by one.
-pub(super) fn differences([a, b]: [&MeshGeometry; 2], are_near: bool) -> Option<Vec<Difference>> {
+/// In what two mechanical parts differ, if they are variants of one part. `rms` is how far their surfaces are apart, if
+/// they can be laid over each other at one size.
+pub(super) fn differences([a, b]: [&MeshGeometry; 2], rms: Option<f64>) -> Option<Vec<Difference>> {
     // Noise breaks planes and cylinders up, so that holes and steps of a noisy part are not those that it has.
     let is_exact = |part: &MeshGeometry| part.is_mechanical() && !part.has_noisy_planes();
     if !(is_exact(a) && is_exact(b)) {
@@ -186,6 +190,6 @@ pub(super) fn differences([a, b]: [&MeshGeometry; 2], are_near: bool) -> Option<
     }
     found.dedup();
     let same_parts = same_build && (same_holes || a.closed.map(|x| x.1) != b.closed.map(|x| x.1));
-    let is_variant = (same_parts || are_near) && is_near && !found.is_empty();
+    let is_variant = (same_parts || rms.is_some_and(|rms| rms < NEAR)) && is_near && !found.is_empty();
     is_variant.then_some(found)
 }
