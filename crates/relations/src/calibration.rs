@@ -7,6 +7,8 @@ use std::num::NonZero;
 
 use descriptors::Boundary;
 
+use super::geometry::MAX_ROUNDING;
+
 /// One surface, by its distance in multiples of what is allowed: 619 copies, 1,081 others.
 pub(super) const SAME_SURFACE: Boundary = Boundary { at: 0.918, steepness: 4.26, range: [0.0, 0.998] };
 
@@ -50,9 +52,9 @@ pub(super) const FARTHEST: f64 = 2.0 * 4.5 / PARTS;
 /// Half and twice as much change no answer.
 pub(super) const ARCS: f64 = 1.5;
 
-/// The systematic offset of a region of a part that is none: rounding and what alignments leave, relative to the size. Copies of 40
-/// parts with circles of 20 to 64 segments, refined and decimated, stay below half of it and their arcs.
-pub(super) const FLUSH: f64 = 2e-4;
+/// The systematic offset of a region of a part that is none: rounding, and as much that alignments leave, relative to the size. Copies
+/// of 40 parts with circles of 20 to 64 segments, refined and decimated, stay below half of it and their arcs.
+pub(super) const FLUSH: f64 = 2.0 * MAX_ROUNDING;
 
 /// Standard errors by which independent noise may shift the mean of a region.
 pub(super) const STANDARD_ERRORS: f64 = 4.0;

@@ -10,9 +10,6 @@ use super::{Relation, RelationKind};
 /// Normals that differ by less than this (sine) are one: the rounding of files turns small faces by as much. A tolerance.
 const ONE_NORMAL: f64 = 1e-3;
 
-/// Noise takes neighbors from the surface independently of each other: their correlation along edges is below this. With noise of .03 to .2 % of the size on 20 generated bodies and parts, subdivided or not, it is at most .09.
-const CORRELATION: f64 = 0.1;
-
 /// A copy has lost something if the vertices of the other one are farther from it than its own are from that, root mean square, by the
 /// first factor and mostly at few vertices, with a fourth moment above the limit, or by the second factor. The remeshed copies of those
 /// bodies and parts have lost tips and edges, finer ones too: nine of ten have 1.29 to 17. Decimated ones have at most 1.58 the other way
@@ -46,10 +43,6 @@ impl Merit {
 }
 
 impl Displacements {
-    fn is_noise(&self) -> bool {
-        self.correlation.abs() < CORRELATION
-    }
-
     /// Whether these vertices have something that the other surface, whose gaps are given, has lost.
     fn has_more(&self, other: &Self) -> bool {
         let factor = LOST[usize::from(self.kurtosis < HEAVY_TAILS)];

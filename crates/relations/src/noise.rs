@@ -5,11 +5,8 @@ use std::collections::VecDeque;
 use nalgebra::{Matrix3, Point3, Vector3};
 use surface::{FaceId, Topology};
 
+use super::calibration::MAX_NOISE;
 use super::geometry::{MAX_ROUNDING, MeshGeometry};
-
-/// How often the tolerance of planes doubles, from that of rounding. Noise of up to a fifth of the last one is measured; beyond, parts of
-/// curved surfaces look flat.
-const DOUBLINGS: i32 = 7;
 
 /// Faces of a plane, and faces that lie on each other, turn by less than this (cosine), also with noise, and most of the boundary of a
 /// plane is an edge that turns by more: by 40°, as at sharp edges of parts.
@@ -66,7 +63,9 @@ impl MeshGeometry {
                 vectors[g].norm_squared().total_cmp(&vectors[f].norm_squared()).then(f.cmp(&g))
             });
             let (mut planes, mut most) = (Vec::new(), MIN_PLANES);
-            for tolerance in (0..=DOUBLINGS).map(|i| MAX_ROUNDING * 2f64.powi(i)) {
+            // Noise of up to a fifth of the last one is measured; beyond, parts of curved surfaces look flat.
+            let tolerances = std::iter::successors(Some(MAX_ROUNDING), |tolerance| Some(2.0 * tolerance));
+            for tolerance in tolerances.take_while(|tolerance| *tolerance < MAX_NOISE) {
                 let [area, squares] = self.planes_within(tolerance, &topology, &vectors, &order);
                 most = f64::max(most, area);
                 planes.push([area, squares]);
