@@ -9,13 +9,9 @@ use crate::functional::FunctionalMaps;
 use crate::known::KnownMap;
 use crate::local::mean_gap;
 use crate::params::MapParams;
-use crate::shape::MapShape;
+use crate::shape::{LIMB, MapShape};
 use crate::sketch::Sketch;
 use crate::surface_map::{MapKind, codistortion};
-
-/// A landmark that a map misses by more than this multiple of [`MapParams::same`] does not fit it. A safety limit: of the
-/// landmarks that fit the mirrored map as well, right maps of built-in men, cats and centaurs miss none by more than 1.3.
-const UNFIT: f64 = 5.0;
 
 /// A map of functions and of samples, with what ranks it among others.
 #[derive(Clone)]
@@ -140,7 +136,7 @@ impl KnownMap {
         };
         let all: Vec<[f64; 2]> = direct.misses.iter().zip(&mirrored.misses).map(|(x, y)| [*x, *y]).collect();
         let fits = |miss: f64| miss < params.clearly * params.same;
-        let only = |i: usize| all.iter().position(|both| fits(both[i]) && both[1 - i] > UNFIT * params.same);
+        let only = |i: usize| all.iter().position(|both| fits(both[i]) && both[1 - i] > LIMB);
         match (only(0), only(1)) {
             // Maps that are both wrong leave others.
             (Some(i), Some(j)) if all.iter().all(|[x, y]| fits(x.min(*y))) => {

@@ -46,7 +46,7 @@ const SHARES: [f64; 2] = [0.25, 0.92];
 ///    is kept.
 /// 2. All other samples go where their distances from these fit best, and then all again by their distances from all
 ///    landmarks. Of distances that a path through what is missing may shorten, only bounds are known.
-/// 3. Of each orientation, the map that keeps distances, curvature and the products of functions best is taken.
+/// 3. Of each orientation, the map that keeps distances and curvature best is taken.
 ///
 /// # Errors
 /// [`MapError::Contradiction`] for landmarks that cannot all be right; [`MapError::Descriptor`], also if the budget of the observer

@@ -1,14 +1,10 @@
 //! Where a few landmarks of a part may be on the whole.
 
-use super::sides::Sides;
+use super::sides::{CURVATURE, Sides};
 use crate::nearest_rows::first_of;
 
 /// Landmarks of the part that are placed, at most. A convention.
 const PLACED: usize = 12;
-
-/// Weight of curvature, beside 1 for each squared distance in units of what is expected. A convention: among the 24 best
-/// placements on built-in bodies, one is right as a rule, and with 0 one pair of men is placed wrongly.
-const CURVATURE: f64 = 0.3;
 
 /// Hypotheses with fewer landmarks than this are all kept, up to `MANY`; of others those that are apart, up to `WIDTH`.
 /// Safety limits of time.

@@ -8,7 +8,7 @@ use surface::VertexId;
 
 use super::landmarks::placements;
 use super::places::{Fineness, Places, change_of_curvature, change_of_distances, placed, placed_again};
-use super::sides::Sides;
+use super::sides::{CURVATURE, Sides};
 use super::vertices::{Coverage, all_vertices, onto_part};
 use crate::local::vertex_confidence;
 use crate::params::MapParams;
@@ -34,11 +34,6 @@ const STEEPNESS: f64 = 2.5;
 /// in 25 of 26 pairs.
 const DOUBTFUL: Boundary = Boundary::new(0.045, 8.0);
 
-/// Weights of the mean difference of curvatures and of the [`defect`], beside 1 for the mean change of distances. Chosen on 14
-/// maps of built-in bodies, where with 0.2 instead of 0.1 one more is wrong; up to 0.02 instead of 0.01 none is.
-const CURVATURE: f64 = 0.1;
-const DEFECT: f64 = 0.01;
-
 /// A map of samples with what ranks it.
 struct ScoredPlaces {
     places: Places,
@@ -59,8 +54,7 @@ impl ScoredPlaces {
         // How far it takes known points from their partners on average, beyond what is respected.
         let miss = (sides.miss(&places) - sides.params.same).max(0.0);
         let functional = functional(sides, &places);
-        let defect = functional.as_ref().map_or(1.0, |map| defect(sides, map));
-        let score = distortion + CURVATURE * curvature + DEFECT * defect + miss;
+        let score = distortion + CURVATURE * curvature + miss;
         let agreement = functional.and_then(|map| sides.part.agreement(sides.whole, &map, &places));
         Self { agreement, distortion, score: score / favor, places, favor }
     }
@@ -181,11 +175,4 @@ fn functional(sides: &Sides<'_>, places: &[usize]) -> Option<Matrix> {
     let images: Vec<usize> = places.iter().map(|y| sides.whole.samples[*y]).collect();
     let pulled = whole.vectors.columns(0, n).select_rows(&images);
     Some(Cholesky::new(own.tr_mul(&own))?.solve(&own.tr_mul(&pulled)))
-}
-
-/// How far a map of functions is from one of a part, whose rows are orthonormal: `|C C' - I|² / k`.
-fn defect(sides: &Sides<'_>, functional: &Matrix) -> f64 {
-    // The eigenfunctions of the whole have norm 1 over its area.
-    let (map, k) = (functional * sides.scale, functional.nrows());
-    (&map * map.transpose() - Matrix::identity(k, k)).norm_squared() / k as f64
 }
