@@ -37,9 +37,6 @@ const ENERGIES: usize = 12;
 /// Number of bins of the distribution of waves at one energy.
 const WAVE_BINS: usize = SignatureKind::WaveKernel.n_values() / ENERGIES;
 
-/// Number of eigenpairs used, including the constant function.
-const EIGENPAIRS: usize = LaplaceSpectrum::DESCRIBING;
-
 /// Weyl's estimate of eigenvalue number `i` of a surface of unit area. It makes times and energies depend on the number
 /// of eigenpairs, not on the surface.
 fn weyl(i: f64) -> f64 {
@@ -58,7 +55,7 @@ fn weyl(i: f64) -> f64 {
 ///   triangulation as the spectrum does.
 /// * On a mesh without a second eigenvalue all values are zero.
 pub fn heat_kernel_signature(spectrum: &LaplaceSpectrum) -> Signature {
-    let ends = [weyl(EIGENPAIRS as f64), weyl(1.0)].map(|value| (4.0 * LN_10 / value).ln());
+    let ends = [weyl(LaplaceSpectrum::DESCRIBING as f64), weyl(1.0)].map(|value| (4.0 * LN_10 / value).ln());
     let times: Vec<f64> = spaced(ends, TIMES).map(f64::exp).collect();
     let filters = filters(spectrum, TIMES, |j, value| (-value * times[j]).exp());
     Signature { kind: SignatureKind::HeatKernel, values: distributions(spectrum, &filters, HEAT_BINS) }
@@ -83,7 +80,7 @@ pub fn wave_kernel_signature(spectrum: &LaplaceSpectrum) -> Signature {
 
 /// The weights of all eigenpairs at each energy.
 fn wave_filters(spectrum: &LaplaceSpectrum) -> Matrix {
-    let ends = [weyl(1.0), weyl(0.7 * EIGENPAIRS as f64)].map(f64::ln);
+    let ends = [weyl(1.0), weyl(0.7 * LaplaceSpectrum::DESCRIBING as f64)].map(f64::ln);
     let energies: Vec<f64> = spaced(ends, ENERGIES).collect();
     let sigma = 1.5 * (energies[1] - energies[0]);
     // Relative to the largest, since all of them underflow far from the eigenvalues.
@@ -110,7 +107,7 @@ fn spaced(ends: [f64; 2], n: usize) -> impl Iterator<Item = f64> {
 fn curved(spectrum: &LaplaceSpectrum) -> impl Iterator<Item = usize> {
     // A tolerance of rounding: constant functions have the eigenvalue 0.
     const ZERO: f64 = 1e-6;
-    let n = spectrum.values.len().min(EIGENPAIRS);
+    let n = spectrum.values.len().min(LaplaceSpectrum::DESCRIBING);
     (1..n).filter(|&i| spectrum.values[i] > ZERO)
 }
 
