@@ -13,14 +13,14 @@ const ONE_NORMAL: f64 = 1e-3;
 /// A copy has lost something if the vertices of the other one are farther from it than its own are from that, root mean square, by the
 /// first factor and mostly at few vertices, with a fourth moment above the limit, or by the second factor. The remeshed copies of those
 /// bodies and parts have lost tips and edges, finer ones too: nine of ten have 1.29 to 17. Decimated ones have at most 1.58 the other way
-/// round, or they have few of the vertices.
+/// round, as a rule.
 const LOST: [f64; 2] = [1.25, 2.0];
 const HEAVY_TAILS: f64 = 6.0;
 
 /// Why one copy of a surface is more exact than another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Merit {
-    /// It has less noise, and no edges that new triangles reach over.
+    /// It has less noise.
     Smooth,
     /// It is closed, and the other one is not.
     Closed,
