@@ -188,7 +188,8 @@ pub(super) fn differences([a, b]: [&MeshGeometry; 2], rms: Option<f64>) -> Optio
     {
         found.push(Difference { what: Dimension::Volume, first, second });
     }
-    found.dedup();
+    // Holes of one size are one difference.
+    found.dedup_by(|x, y| x.what == y.what && !differs(x.first, y.first) && !differs(x.second, y.second));
     let same_parts = same_build && (same_holes || a.closed.map(|x| x.1) != b.closed.map(|x| x.1));
     let is_variant = (same_parts || rms.is_some_and(|rms| rms < NEAR)) && is_near && !found.is_empty();
     is_variant.then_some(found)

@@ -7,8 +7,8 @@ use canonform::descriptors::Side;
 use canonform::relations::{Change, MeshGeometry, Relation, RelationKind};
 use canonform::rigid::Handedness;
 use datasets::{
-    ArticulatedOptions, Damage, Family, MechanicalPart, PartMesh, articulated_body, articulated_shape,
-    mechanical_parts,
+    ArticulatedOptions, Damage, Family, MechanicalPart, PartFamily, PartMesh, articulated_body,
+    articulated_shape, mechanical_parts,
 };
 use descriptors::ShapeDistance;
 use mesh::{TriMesh, shapes};
@@ -162,6 +162,26 @@ fn near_parts_with_noise_are_not_one_surface() {
 fn near_parts_with_less_and_more_noise_are_not_one_surface() {
     let called_one = [0.0005, 0.001, 0.002].map(|noise| near_parts(8, noise));
     assert_eq!(called_one.concat(), Vec::<String>::new());
+}
+
+#[test]
+fn variants_of_parts_name_the_dimensions_that_differ() {
+    let bracket = [42.0, 30.0, 20.0, 3.5, 4.0, 1.0];
+    let (plate, shaft) = ([40.0, 25.0, 3.0, 3.0, 4.0, 4.0], [8.0, 12.0, 10.0, 15.0, 32.0, 18.0]);
+    for (family, own, changed, value, words) in [
+        (PartFamily::Bracket, bracket, 1, 40.0, "width 30 → 40, step 26.5 → 36.5"),
+        (PartFamily::Bracket, bracket, 4, 5.0, "hole diameter 4 → 5"),
+        (PartFamily::Bracket, bracket, 5, 2.0, "number of holes 2 → 4"),
+        (PartFamily::Plate, plate, 0, 42.0, "length 40 → 42"),
+        (PartFamily::Shaft, shaft, 1, 13.0, "diameter 12 → 13, width 12 → 13, height 12 → 13"),
+    ] {
+        let mut other = own;
+        other[changed] = value;
+        let mesh = |values: [f64; 6]| MechanicalPart::new(family, &values).mesh(&PartMesh::default());
+        let [own, other] = [own, other].map(|values| geometry(&mesh(values)));
+        let found = related(&own, &other).named("a", "b").to_string();
+        assert_eq!(found, format!("b is a variant of a: {words}"));
+    }
 }
 
 #[test]
