@@ -13,8 +13,8 @@ pub(crate) fn serve(args: &ServeArgs) -> Result<ExitCode> {
     let server = Server::bind(&args.index, args.options())?;
     let stop = server.stop_handle();
     base::terminal::on_interruption(move || {
-        stop.stop();
         base::terminal::note("finishing the requests in progress; interrupt again to stop at once");
+        stop.stop();
     });
     let address = server.address();
     if !address.ip().is_loopback() {
