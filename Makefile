@@ -102,10 +102,10 @@ deny: ## Check licences and sources of dependencies with cargo-deny (installs it
 CRATES ?= retrieval nmds descriptors
 SHARD ?= 0/8
 
-mutants: ## Change expressions of CRATES one at a time and list in OUT/mutants.out what no test notices, an eighth by default (installs cargo-mutants if missing)
+mutants: ## Change expressions of CRATES one at a time and list in OUT/mutants.out what no test notices, an eighth of each crate by default (installs cargo-mutants if missing)
 	@command -v cargo-mutants >/dev/null || $(CARGO) install --locked cargo-mutants
 	@mkdir -p $(OUT)
-	$(CARGO) mutants $(CRATES:%=--package canonform-%) --shard $(SHARD) --output $(OUT) -- --locked --tests
+	$(CARGO) mutants $(CRATES:%=--package canonform-%) --sharding round-robin --shard $(SHARD) --output $(OUT) -- --locked --tests
 
 sbom: ## Write OUT/sbom, CycloneDX lists of the dependencies of both programs (installs cargo-cyclonedx if missing)
 	@command -v cargo-cyclonedx >/dev/null || $(CARGO) install --locked cargo-cyclonedx
