@@ -51,9 +51,9 @@ impl ShapeSearch {
             describe_part(&surface, describe_options, observer)
         };
         let part = (options.rank_by == SearchRank::Part).then(part).transpose()?;
-        let geometry = self.geometry(&shape.entry);
-        let content = Some(shape.entry.content);
-        let query = Query::new(shape, describe_options).named(id, content);
-        Ok(Query { part, id: Some(id.to_owned()), ..query }.with_geometry(geometry, options.explain))
+        let entry = shape.entry.clone();
+        let query = Query::new(shape, describe_options).named(id, Some(entry.content));
+        let query = Query { part, id: Some(id.to_owned()), ..query };
+        Ok(query.with_geometry(|| self.geometry(&entry), options))
     }
 }

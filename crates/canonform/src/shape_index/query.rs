@@ -77,14 +77,20 @@ impl Query {
         if search.rank_by == SearchRank::Part {
             self.part = Some(describe_part(surface, describe, observer)?);
         }
-        let geometry = MeshGeometry::new(mesh, self.content);
-        Ok(self.with_geometry(geometry, search.explain))
+        let content = self.content;
+        Ok(self.with_geometry(|| MeshGeometry::new(mesh, content), search))
     }
 
     /// The query with its mesh in space, if that is needed to explain results or to order them.
-    pub(super) fn with_geometry(mut self, geometry: Option<MeshGeometry>, explain: bool) -> Self {
-        self.geometry = geometry.map(Arc::new);
-        if !explain && self.noisy_surface().is_none() {
+    pub(super) fn with_geometry(
+        mut self,
+        geometry: impl FnOnce() -> Option<MeshGeometry>,
+        options: &SearchOptions,
+    ) -> Self {
+        if options.explain || matches!(options.rank_by, SearchRank::Plain | SearchRank::Graph) {
+            self.geometry = geometry().map(Arc::new);
+        }
+        if !options.explain && self.noisy_surface().is_none() {
             self.geometry = None;
         }
         self
