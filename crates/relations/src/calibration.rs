@@ -7,8 +7,6 @@ use std::num::NonZero;
 
 use descriptors::Boundary;
 
-use super::geometry::MAX_ROUNDING;
-
 /// One surface, by its distance in multiples of what is allowed: 619 copies, 1,081 others.
 pub(super) const SAME_SURFACE: Boundary = Boundary { at: 0.918, steepness: 4.26, range: [0.0, 0.998] };
 
@@ -52,9 +50,9 @@ pub(super) const FARTHEST: f64 = 2.0 * 4.5 / PARTS;
 /// Half and twice as much change no answer.
 pub(super) const ARCS: f64 = 1.5;
 
-/// The systematic offset of a region of a part that is none: rounding, and as much that alignments leave, relative to the size. Copies
-/// of 40 parts with circles of 20 to 64 segments, refined and decimated, stay below half of it and their arcs.
-pub(super) const FLUSH: f64 = 2.0 * MAX_ROUNDING;
+/// The systematic offset of a region of a part that is none: rounding and what alignments leave, relative to the size. Copies of 40
+/// parts with circles of 20 to 64 segments, refined and decimated, stay below half of it and their arcs.
+pub(super) const FLUSH: f64 = 2e-4;
 
 /// Standard errors by which independent noise may shift the mean of a region.
 pub(super) const STANDARD_ERRORS: f64 = 4.0;
@@ -63,6 +61,3 @@ pub(super) const STANDARD_ERRORS: f64 = 4.0;
 /// each, and the least number of faces in common. Half and twice as many change no answer about pieces.
 /// Of a rim, the vertices that may be one. Of components that differ, those that are aligned with a mesh.
 pub(super) const FEW: NonZero<usize> = NonZero::new(24).unwrap();
-
-/// Faces at whose corners two meshes are compared, images of a vertex and motions that are tried, at most. Limits of effort.
-pub(super) const MANY: usize = 2000;

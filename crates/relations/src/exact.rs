@@ -6,8 +6,14 @@ use nalgebra::{Point3, Vector3};
 use rigid::{NearestPoints, Similarity};
 use surface::VertexId;
 
-use super::calibration::{FEW, MANY};
+use super::calibration::FEW;
 use super::geometry::MeshGeometry;
+
+/// Most pairs of vertices that are tried as images of two vertices of the first mesh.
+const MAX_PAIRS: usize = 2_000_000;
+
+/// Most motions that are checked on all vertices.
+const MAX_CHECKED: usize = 500;
 
 /// A motion is found from two or three points, and moves others a few times as far as these are off. It is made precise
 /// afterwards: half and twice as much change no answer about pieces.
@@ -92,7 +98,7 @@ impl<'a> VertexSearch<'a> {
             let mut found: Vec<usize> = at_radius(p[i].coords.norm()).iter().map(|&(_, j)| j).collect();
             // Most copies keep the order of vertices.
             found.sort_by_key(|&j| j != i);
-            found.into_iter().take(MANY).map(|j| q[j]).collect::<Vec<_>>()
+            found.into_iter().map(|j| q[j]).collect::<Vec<_>>()
         });
         let step = (p.len() / FEW).max(1);
         Some(Self {
@@ -119,8 +125,8 @@ impl<'a> VertexSearch<'a> {
         let is_near = |motion: &Similarity| {
             self.probes.iter().all(|p| self.nearest.nearest(&motion.apply(p)).1 <= off * off)
         };
-        let motions = pairs.filter(is_apart).filter_map(motion).filter(is_near);
-        preferred(motions.take(MANY).filter_map(|motion| self.checked(motion, off)))
+        let motions = pairs.take(MAX_PAIRS).filter(is_apart).filter_map(motion).filter(is_near);
+        preferred(motions.take(MAX_CHECKED).filter_map(|motion| self.checked(motion, off)))
     }
 
     /// The vertices as partners under a motion that is off by at most `off`, which is made precise.

@@ -11,7 +11,7 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use surface::{Components, EdgeId, VertexId, components_of_faces};
 
-use super::calibration::{EXACT, FARTHEST, FEW, MANY, MAX_NOISE};
+use super::calibration::{EXACT, FARTHEST, FEW, MAX_NOISE};
 
 /// How coarsely files round coordinates, relative to the largest coordinate: text with six digits, twice. Numbers of 32 bits
 /// are finer. A tolerance of rounding.
@@ -21,10 +21,15 @@ pub(super) const ROUNDING: f64 = 1e-5;
 /// are equal up to this share.
 pub(super) const MAX_ROUNDING: f64 = 10.0 * ROUNDING;
 
-/// Rounding and other triangles change the size of a mesh, and its spreads about the centroid, by less than this multiple of how far
-/// vertices or surfaces are apart: each mesh by once of it at most (Minkowski), and as much again for the area that decimation takes
-/// from thin limbs.
-pub(super) const SIZE_BY_GAP: f64 = 4.0;
+/// Rounding and other triangles change the sizes of two meshes by at most this multiple of how far their vertices or surfaces are apart, or
+/// by [`ROUNDING`], which may be the same for all vertices.
+pub(super) const SIZE_BY_DISTANCE: f64 = 10.0;
+
+/// Most components that are compared on their own, the largest by area.
+const MAX_COMPONENTS: usize = 200;
+
+/// Most faces at whose corners two meshes are compared. A limit of effort.
+const MAX_FACES: usize = 2000;
 
 /// The least share of the whole area of a component that is compared on its own. A safety limit: it saves time.
 const MIN_COMPONENT: f64 = 1e-3;
@@ -150,7 +155,7 @@ impl MeshGeometry {
 
     /// Evenly chosen faces.
     pub(super) fn some_faces(&self) -> impl Iterator<Item = usize> + Clone {
-        (0..self.n_faces()).step_by(self.n_faces().div_ceil(MANY))
+        (0..self.n_faces()).step_by(self.n_faces().div_ceil(MAX_FACES))
     }
 
     /// Number of connected components.
@@ -238,7 +243,7 @@ impl MeshGeometry {
                 let surface = RigidSurface::new(whole.without_unused_vertices())?;
                 Some(Self::from_surface(surface, self.rounding))
             };
-            order.iter().filter_map(part).collect()
+            order.iter().take(MAX_COMPONENTS).filter_map(part).collect()
         })
     }
 }
@@ -287,7 +292,10 @@ mod tests {
     fn a_soup_of_triangles_is_the_same_geometry_also_with_cracks() {
         let ball = shapes::icosphere(2);
         for crack in [0.0, 1e-6] {
-            let mut soup = testkit::soup(&ball);
+            let mut soup = TriMesh {
+                positions: (0..ball.n_faces()).flat_map(|f| ball.triangle(f)).collect(),
+                faces: (0..ball.n_faces()).map(|f| [0, 1, 2].map(|i| VertexId::from(3 * f + i))).collect(),
+            };
             soup.positions.iter_mut().enumerate().for_each(|(i, p)| p.x += crack * (i as f64).sin());
             let [a, b] = [&ball, &soup].map(|mesh| MeshGeometry::new(mesh, None).unwrap());
             assert_eq!((a.n_vertices(), a.n_faces()), (b.n_vertices(), b.n_faces()));

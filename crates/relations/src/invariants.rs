@@ -3,8 +3,12 @@
 use rigid::{MAX_DEVIATION, axis_deviation, rms_radius};
 
 use super::calibration::{ARCS, EXACT, FARTHEST, MAX_NOISE, PARTS};
-use super::geometry::{MeshGeometry, SIZE_BY_GAP};
+use super::geometry::MeshGeometry;
 use super::same_surface::{allowed_in_bodies, rms_chord_error};
+
+/// Spreads of closed bodies differ by less than this multiple of what copies may be apart, both as shares of the rms radius: each
+/// of the two by once of it at most (Minkowski), and as much again for the area that decimation takes from thin limbs.
+const SPREAD_BY_GAP: f64 = 4.0;
 
 /// What copies of one surface have in common, whatever their triangles, places and sizes.
 ///
@@ -79,7 +83,7 @@ impl SurfaceInvariants {
             false => allowed_in_bodies(self.chords + other.chords, self.is_noisy || other.is_noisy),
         };
         let radius = rms_radius(self.spreads).min(rms_radius(other.spreads));
-        MAX_DEVIATION.min(SIZE_BY_GAP * allowed / radius)
+        MAX_DEVIATION.min(SPREAD_BY_GAP * allowed / radius)
     }
 }
 

@@ -14,15 +14,15 @@ use super::geometry::MeshGeometry;
 /// answer.
 pub(super) const ABOUT: f64 = 0.05;
 
-/// Displacements of neighboring vertices are independent, as those by noise, if their correlation along edges is below this. It is 1 for a
-/// smooth deformation, and at most .09 for noise of .03 to .2 % of the size on 20 generated bodies and parts, subdivided or not.
+/// Displacements of neighboring vertices are independent, as those by noise, if their correlation along edges is below
+/// this. A safety limit: it is 0 for noise and 1 for a smooth deformation.
 const INDEPENDENT: f64 = 0.5;
 
 /// What happened to the triangles of a surface; `map` takes the first mesh onto the second. Of meshes with the same faces it is
 /// [`Change::Noisy`] if displacements do not depend on those of neighbors, else [`Change::Posed`].
 pub(super) fn mesh_change([a, b]: [&MeshGeometry; 2], map: &Similarity) -> Change {
     if a.n_vertices() == b.n_vertices() && a.mesh().faces == b.mesh().faces {
-        let is_noise = Displacements::between([a, b]).is_some_and(|found| found.is_noise());
+        let is_noise = Displacements::between([a, b]).is_some_and(|found| found.correlation < INDEPENDENT);
         return if is_noise { Change::Noisy } else { Change::Posed };
     }
     let ratio = b.n_vertices() as f64 / a.n_vertices() as f64;
@@ -65,11 +65,6 @@ impl Displacements {
         let (rms, kurtosis) = ((squares / n).sqrt(), n * fourths / (squares * squares));
         // An edge has two faces.
         Self { rms, kurtosis, correlation: joint / squares, n_edges: 0.5 * n }
-    }
-
-    /// Whether they are independent of those of neighbors.
-    pub(super) fn is_noise(&self) -> bool {
-        self.correlation.abs() < INDEPENDENT
     }
 
     /// Of two meshes with the same faces, best laid over each other.

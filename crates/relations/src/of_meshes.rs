@@ -8,7 +8,7 @@ use rigid::{Alignment, Gap, Similarity, align_surfaces, is_symmetric};
 use super::calibration::{CUT, EXACT, FARTHEST, VARIANT};
 use super::cut::piece_of;
 use super::exact::{SameVertices, same_vertices};
-use super::geometry::{MAX_ROUNDING, MeshGeometry, ROUNDING, SIZE_BY_GAP};
+use super::geometry::{MAX_ROUNDING, MeshGeometry, ROUNDING, SIZE_BY_DISTANCE};
 use super::mesh_change::mesh_change;
 use super::noise::noise_of_parts;
 use super::parts::{PartCopy, Parts, occurrences};
@@ -19,7 +19,7 @@ use super::{Basis, Change, Relation, RelationKind, SIZE_OF_SURFACES};
 
 /// Up to which share the sizes of two triangulations are equal that are so far apart, at unit area.
 fn size_tolerance(gap: Gap) -> f64 {
-    (SIZE_BY_GAP * gap.rms).clamp(MAX_ROUNDING, SIZE_OF_SURFACES)
+    (SIZE_BY_DISTANCE * gap.rms).clamp(MAX_ROUNDING, SIZE_OF_SURFACES)
 }
 
 impl Relation {
@@ -131,7 +131,7 @@ impl Relation {
         // A surface that is its own mirror image is not another one for being mirrored, only its triangles are.
         let is_turned = reflected && is_symmetric(&b.surface);
         // Sizes are known as well as vertices agree.
-        let tolerance = (SIZE_BY_GAP * same.gap).clamp(ROUNDING, MAX_ROUNDING);
+        let tolerance = (SIZE_BY_DISTANCE * same.gap).clamp(ROUNDING, MAX_ROUNDING);
         changes.extend(Change::from_similarity(scale, tolerance, reflected && !is_turned));
         changes.extend((is_turned || !same.same_faces).then_some(Change::Remeshed));
         let kind = match changes.last() {

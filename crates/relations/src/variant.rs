@@ -8,6 +8,10 @@ use super::calibration::EXACT;
 use super::geometry::MeshGeometry;
 use super::numbers::in_four_digits;
 
+/// Dimensions that differ by less than this share are equal: arcs of few segments are measured a little too small. Half and twice
+/// as much change no answer.
+const EQUAL: f64 = 2e-3;
+
 /// No dimension of a variant differs by more than this factor: what differs more is another part.
 const MAX_CHANGE: f64 = 2.5;
 
@@ -158,7 +162,7 @@ pub(super) fn differences([a, b]: [&MeshGeometry; 2], rms: Option<f64>) -> Optio
     }
     let [a, b] = [a, b].map(Dimensions::new);
     let tolerance = EXACT * f64::max(a.size, b.size);
-    let differs = |x: f64, y: f64| (x - y).abs() > tolerance;
+    let differs = |x: f64, y: f64| (x - y).abs() > tolerance + EQUAL * f64::max(x, y);
     let mut found = Vec::new();
     // Of as many on either side.
     let mut compare = |what: Dimension, x: &[f64], y: &[f64]| {
@@ -184,7 +188,7 @@ pub(super) fn differences([a, b]: [&MeshGeometry; 2], rms: Option<f64>) -> Optio
     }
     if found.is_empty()
         && let (Some((first, _)), Some((second, _))) = (a.closed, b.closed)
-        && (first - second).abs() > EXACT * f64::max(first, second)
+        && (first - second).abs() > EQUAL * f64::max(first, second)
     {
         found.push(Difference { what: Dimension::Volume, first, second });
     }
