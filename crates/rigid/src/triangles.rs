@@ -126,7 +126,6 @@ impl TriangleTree {
             // A triangle is no nearer than its plane, and in this no nearer than the lines along its sides.
             let height = normal.dot(&(query - corners[0]));
             let beyond = |i: usize| outwards[i].dot(&(query - corners[i]));
-            let larger = |x: f64, y: f64| if x > y { x } else { y };
             let aside = larger(larger(beyond(0), beyond(1)), larger(beyond(2), 0.0));
             if height * height + aside * aside > best.sq_distance * (1.0 + ROUNDING) {
                 continue;
@@ -149,10 +148,13 @@ struct Best {
     triangle: usize,
 }
 
+/// The larger number in one instruction, which `f64::max` is not.
+fn larger(x: f64, y: f64) -> f64 {
+    if x > y { x } else { y }
+}
+
 impl Node {
     fn sq_distance(&self, p: &Point3<f64>) -> f64 {
-        // One instruction each, which `f64::max` is not.
-        let larger = |x: f64, y: f64| if x > y { x } else { y };
         let beyond = |i: usize| larger(larger(self.low[i] - p[i], p[i] - self.high[i]), 0.0);
         (0..3).map(|i| beyond(i).powi(2)).sum()
     }
