@@ -24,11 +24,7 @@ const ORGANIC_SHARP: f64 = 60.0;
 /// Vertices of a flat beyond which its width is not measured; such a flat is wide. A safety limit on time.
 const MAX_CORNERS: usize = 64;
 
-/// Distances from the axis of a cylinder differ by less than this share: a circle of twelve chords, divided once more, has
-/// points at cos 15° of the radius. A tolerance.
-const ROUND: f64 = 0.05;
-
-/// Normals of a cylinder are this near to a plane, in the mean square. A tolerance.
+/// Normals of a cylinder are this near to a plane, in the mean square, relative to how they turn in it. A tolerance.
 const ACROSS: f64 = 1e-3;
 
 /// A surface is mechanical if planes and cylinders between sharp edges have at least this share of its area. All
@@ -64,7 +60,7 @@ pub enum RegionShape {
     Cylinder {
         /// Unit direction of the axis.
         axis: Vector3<f64>,
-        /// The largest distance of a vertex from the axis.
+        /// The largest distance of an edge along the axis from it.
         radius: f64,
         /// Whether the normals point to the axis.
         is_hole: bool,
@@ -139,6 +135,10 @@ impl SmoothRegions {
     /// Directions nearer to each other than this are one (cosine). A tolerance of rounding and of arcs.
     pub const PARALLEL: f64 = 0.999;
 
+    /// Distances from the axis of a cylinder differ by less than this share: the middles of twelve chords are at cos 15° of the
+    /// radius. A tolerance.
+    pub const ROUND: f64 = 0.05;
+
     /// Finds the pieces.
     ///
     /// # Panics
@@ -171,12 +171,20 @@ impl SmoothRegions {
         members.retain(|members| !members.is_empty());
         let mut of_flat = vec![0; flats.len()];
         members.iter().enumerate().for_each(|(i, flats)| flats.iter().for_each(|&flat| of_flat[flat] = i));
+        let mut corners = vec![Vec::new(); members.len()];
+        for crease in &creases {
+            let [region, other] = crease.flats.map(|flat| of_flat[flat]);
+            if region == other {
+                corners[region].extend(crease.ends);
+            }
+        }
         let total = mesh.area();
         let (mut plain, mut wide) = (0.0, 0);
         let all: Vec<SmoothRegion> = members
             .iter()
-            .map(|members| {
-                let region = region(mesh, &flats, members);
+            .zip(&corners)
+            .map(|(members, corners)| {
+                let region = region(mesh, &flats, members, corners);
                 // A triangle is a plane by itself, divided or not; organic meshes of few triangles have many.
                 let flat = &flats[members[0]];
                 let is_plane =
@@ -313,7 +321,8 @@ fn width(mesh: &TriMesh, flat: &Flat, [start, end]: [Point3<f64>; 2]) -> f64 {
     corners.map(|p| (p - start).cross(&along).norm()).fold(0.0, f64::max)
 }
 
-fn region(mesh: &TriMesh, flats: &[Flat], members: &[usize]) -> SmoothRegion {
+/// The region of some flats; `corners` are the ends of the edges between them.
+fn region(mesh: &TriMesh, flats: &[Flat], members: &[usize], corners: &[Point3<f64>]) -> SmoothRegion {
     let area = members.iter().map(|&flat| flats[flat].area).sum();
     let shape = match members {
         [flat] => {
@@ -323,20 +332,26 @@ fn region(mesh: &TriMesh, flats: &[Flat], members: &[usize]) -> SmoothRegion {
                 offset: flat.normal.dot(&mesh.triangle(flat.faces[0])[0].coords),
             }
         }
-        _ => cylinder(mesh, flats, members).unwrap_or(RegionShape::Curved),
+        _ => cylinder(mesh, flats, members, corners).unwrap_or(RegionShape::Curved),
     };
     SmoothRegion { shape, area }
 }
 
-/// The cylinder through flats, if there is one.
-fn cylinder(mesh: &TriMesh, flats: &[Flat], members: &[usize]) -> Option<RegionShape> {
+/// The cylinder through flats, if there is one. Its circle has the corners between them: others may be on chords.
+fn cylinder(
+    mesh: &TriMesh,
+    flats: &[Flat],
+    members: &[usize],
+    corners: &[Point3<f64>],
+) -> Option<RegionShape> {
     let covariance: Matrix3<f64> = members
         .iter()
         .map(|&flat| flats[flat].normal * flats[flat].normal.transpose() * flats[flat].area)
         .sum();
     let eigen = covariance.symmetric_eigen();
     let least = eigen.eigenvalues.imin();
-    if eigen.eigenvalues[least] > ACROSS * eigen.eigenvalues.sum() {
+    // Normals of a shallow cone are near to a plane as well, and to a line.
+    if eigen.eigenvalues[least] > ACROSS * (eigen.eigenvalues.sum() - eigen.eigenvalues.max()) {
         return None;
     }
     let axis = Unit::new_normalize(eigen.eigenvectors.column(least).into_owned());
@@ -344,11 +359,16 @@ fn cylinder(mesh: &TriMesh, flats: &[Flat], members: &[usize]) -> Option<RegionS
     let v = axis.cross(&u);
     let flat = |p: &Point3<f64>| Vector2::new(u.dot(&p.coords), v.dot(&p.coords));
     let faces = || members.iter().flat_map(|&flat| flats[flat].faces.iter().copied());
-    let points: Vec<Vector2<f64>> = faces().flat_map(|f| mesh.triangle(f)).map(|p| flat(&p)).collect();
-    let center = center_of_circle(&points)?;
-    let radii = || points.iter().map(|p| (p - center).norm());
-    let (radius, least) = (radii().fold(0.0, f64::max), radii().fold(f64::INFINITY, f64::min));
-    if least < (1.0 - ROUND) * radius {
+    let corners: Vec<Vector2<f64>> = corners.iter().map(&flat).collect();
+    let center = center_of_circle(&corners)?;
+    let radius = corners.iter().map(|p| (p - center).norm()).fold(0.0, f64::max);
+    // The corners of a rectangle are on a circle, too, but not what is between them.
+    let middles = faces().flat_map(|f| {
+        let [a, b, c] = mesh.triangle(f).map(|p| flat(&p));
+        [a + b, b + c, c + a].map(|sum| 0.5 * sum)
+    });
+    let least = middles.map(|p| (p - center).norm()).fold(f64::INFINITY, f64::min);
+    if least < (1.0 - SmoothRegions::ROUND) * radius {
         return None;
     }
     let outward: f64 = faces()
