@@ -10,6 +10,7 @@ mod cut;
 mod evidence;
 mod exact;
 mod exactness;
+mod extents;
 mod geometry;
 mod invariants;
 mod kind;

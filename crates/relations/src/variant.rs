@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use serde::Serialize;
 
 use super::calibration::EXACT;
+use super::extents::extents;
 use super::geometry::MeshGeometry;
 use super::numbers::in_four_digits;
 
@@ -82,8 +83,8 @@ struct Dimensions {
     /// Diameters, ascending.
     holes: Vec<f64>,
     bosses: Vec<f64>,
-    /// Overall, descending.
-    extents: [f64; 3],
+    /// Overall, descending; none if nothing is flat or round.
+    extents: Vec<f64>,
     /// Distances between neighboring planes in all directions, ascending.
     steps: Vec<f64>,
     /// The volume and the Euler characteristic.
@@ -117,7 +118,8 @@ impl Dimensions {
             part.surface.regions().directions().into_iter().map(|(d, _)| d).collect();
         found.steps = directions.iter().flat_map(|d| steps(regions, d)).map(|x| x * part.size()).collect();
         found.steps.sort_by(f64::total_cmp);
-        found.extents = extents(part, &directions).map(|x| x * part.size());
+        let extents = directions.first().map(|main| extents(&part.mesh().positions, main));
+        found.extents = extents.into_iter().flatten().map(|x| x * part.size()).collect();
         found
     }
 }
@@ -134,22 +136,6 @@ fn steps(regions: &[SmoothRegion], direction: &Vector3<f64>) -> Vec<f64> {
     offsets.sort_by(f64::total_cmp);
     offsets.dedup_by(|a, b| (*a - *b).abs() < EXACT);
     offsets.windows(2).map(|pair| pair[1] - pair[0]).collect()
-}
-
-/// Overall dimensions in the frame of the part: along its main direction, along one across, and along the third. A part
-/// that is round has its diameter across.
-fn extents(part: &MeshGeometry, directions: &[Vector3<f64>]) -> [f64; 3] {
-    let first = directions.first().copied().unwrap_or_else(Vector3::x);
-    let across = directions.iter().find(|d| d.dot(&first).abs() < 1.0 - SmoothRegions::PARALLEL).copied();
-    let second = across.unwrap_or_else(|| first.cross(&Vector3::ith(first.iamin(), 1.0)).normalize());
-    let frame = [first, second, first.cross(&second)];
-    let along = |d: &Vector3<f64>| {
-        let values = || part.mesh().positions.iter().map(|p| p.coords.dot(d));
-        values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
-    };
-    let mut extents = frame.each_ref().map(along);
-    extents.sort_by(|a, b| b.total_cmp(a));
-    extents
 }
 
 /// In what two mechanical parts differ, if they are variants of one part. `rms` is how far their surfaces are apart, if
@@ -174,7 +160,8 @@ pub(super) fn differences([a, b]: [&MeshGeometry; 2], rms: Option<f64>) -> Optio
     compare(Dimension::HoleDiameter, &a.holes, &b.holes);
     compare(Dimension::Diameter, &a.bosses, &b.bosses);
     for (i, what) in [Dimension::Length, Dimension::Width, Dimension::Height].into_iter().enumerate() {
-        compare(what, &a.extents[i..=i], &b.extents[i..=i]);
+        let [x, y] = [&a, &b].map(|part| part.extents.get(i..=i).unwrap_or_default());
+        compare(what, x, y);
     }
     compare(Dimension::Step, &a.steps, &b.steps);
     let is_extent = |x: f64| a.extents.iter().chain(&b.extents).any(|y| !differs(x, *y));
