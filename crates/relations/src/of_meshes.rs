@@ -187,17 +187,20 @@ impl Relation {
     /// Of meshes that are not one surface. Parts of machines do not bend, so they are variants of one part, or other parts.
     fn with_differences(mut self, meshes: [&MeshGeometry; 2]) -> Self {
         let [a, b] = meshes;
-        let sides = [(Side::First, a, b), (Side::Second, b, a)];
-        let piece = sides.into_iter().find_map(|(whole, of, piece)| piece_of(whole, of, piece));
-        if let Some((cut, factor)) = piece {
+        let rms = self.evidence.surface_gap.map(|gap| gap.rms);
+        let differences = differences(meshes, rms);
+        // What was cut out of a body is open; a closed part is a variant, though it shares most triangles.
+        let is_cut = |piece: &MeshGeometry| differences.is_none() || piece.closed().is_none();
+        let sides = [(Side::First, a, b), (Side::Second, b, a)].into_iter();
+        let mut pieces = sides.filter(|(_, _, piece)| is_cut(piece));
+        if let Some((cut, factor)) = pieces.find_map(|(whole, of, piece)| piece_of(whole, of, piece)) {
             let scale = if cut.whole == Side::First { factor } else { 1.0 / factor };
             self.evidence.cut = Some(cut);
             let mut changes = Change::from_similarity(scale, MAX_ROUNDING, false);
             changes.push(Change::Cut);
             return self.found(RelationKind::PartOf, CUT, changes, scale, MAX_ROUNDING);
         }
-        let rms = self.evidence.surface_gap.map(|gap| gap.rms);
-        if let Some(differences) = differences(meshes, rms) {
+        if let Some(differences) = differences {
             self.evidence.differences = differences;
             self.changes.clear();
             return Self { kind: RelationKind::Variant, confidence: VARIANT, ..self };

@@ -165,20 +165,26 @@ fn near_parts_with_less_and_more_noise_are_not_one_surface() {
 }
 
 #[test]
-fn variants_of_parts_name_the_dimensions_that_differ() {
-    let bracket = [42.0, 30.0, 20.0, 3.5, 4.0, 1.0];
-    let (plate, shaft) = ([40.0, 25.0, 3.0, 3.0, 4.0, 4.0], [8.0, 12.0, 10.0, 15.0, 32.0, 18.0]);
-    for (family, own, changed, value, words) in [
+fn variants_of_parts_name_the_dimensions_that_differ_wherever_they_lie() {
+    let bracket = &[42.0, 30.0, 20.0, 3.5, 4.0, 1.0][..];
+    let (plate, shaft) = (&[40.0, 25.0, 3.0, 3.0, 4.0, 4.0], &[8.0, 12.0, 10.0, 15.0, 32.0, 18.0]);
+    let enclosure = &[60.0, 40.0, 20.0, 2.0, 2.0];
+    for (family, values, changed, value, words) in [
         (PartFamily::Bracket, bracket, 1, 40.0, "width 30 → 40, step 26.5 → 36.5"),
         (PartFamily::Bracket, bracket, 4, 5.0, "hole diameter 4 → 5"),
         (PartFamily::Bracket, bracket, 5, 2.0, "number of holes 2 → 4"),
         (PartFamily::Plate, plate, 0, 42.0, "length 40 → 42"),
+        (PartFamily::Plate, plate, 4, 5.0, "hole diameter 4 → 5"),
         (PartFamily::Shaft, shaft, 1, 13.0, "diameter 12 → 13, width 12 → 13, height 12 → 13"),
+        // They share most triangles.
+        (PartFamily::Shaft, shaft, 5, 20.0, "length 65 → 67, step 18 → 20"),
+        (PartFamily::Enclosure, enclosure, 2, 22.0, "height 20 → 22"),
     ] {
-        let mut other = own;
-        other[changed] = value;
-        let mesh = |values: [f64; 6]| MechanicalPart::new(family, &values).mesh(&PartMesh::default());
-        let [own, other] = [own, other].map(|values| geometry(&mesh(values)));
+        let own = MechanicalPart::new(family, values).mesh(&PartMesh::default());
+        let mut values = values.to_vec();
+        values[changed] = value;
+        let other = MechanicalPart::new(family, &values).mesh(&PartMesh::default());
+        let [own, other] = [geometry(&own), geometry(&Damage::Move.apply(&other, 7))];
         let found = related(&own, &other).named("a", "b").to_string();
         assert_eq!(found, format!("b is a variant of a: {words}"));
     }
