@@ -27,6 +27,13 @@ const MAX_CORNERS: usize = 64;
 /// Normals of a cylinder are this near to a plane, in the mean square, relative to how they turn in it. A tolerance.
 const ACROSS: f64 = 1e-3;
 
+/// Edges along a cylinder have the same distance from its axis but for this share. A tolerance of rounding.
+const ON_CIRCLE: f64 = 0.01;
+
+/// Points are on a line if the product of their moments is less than this share of the square of the sum, as on an arc of 4°, whose
+/// radius is not known. A tolerance.
+const ON_LINE: f64 = 1e-4;
+
 /// A surface is mechanical if planes and cylinders between sharp edges have at least this share of its area. All
 /// generated parts have it, and no creature (`cargo test -p canonform-datasets parts_are_mechanical`).
 const MECHANICAL: f64 = 0.15;
@@ -42,6 +49,10 @@ const OUTLINE: f64 = 1e-3;
 /// Area vectors of a body add up to zero, those of a sheet to its area. Below this share a surface is a body. A convention: a
 /// box without a lid has a fifth, half of a cylinder .6.
 const MAX_OPEN: f64 = 0.4;
+
+/// A flat is a plane by itself if it is so many times larger than all those that it meets at blunt edges, which are those of a fillet.
+/// A convention: the flats of a smooth surface are about as large as their neighbors.
+const PLANE: f64 = 6.0;
 
 /// Least share of the area of a plane that counts for [`MECHANICAL`]. A convention.
 const LARGE: f64 = 0.0025;
@@ -162,9 +173,19 @@ impl SmoothRegions {
         let topology = mesh.topology();
         let (flats, of_face) = flats(mesh, &topology);
         let creases = creases(mesh, &topology, &flats, &of_face);
+        let total = mesh.area();
+        let blunt = || creases.iter().filter(|crease| crease.turn < SHARP.to_radians());
+        // A plane that goes over into rounded edges is none of their flats.
+        let mut is_plane: Vec<bool> =
+            flats.iter().map(|flat| flat.area > LARGE && !flat.is_triangle(mesh, total)).collect();
+        for [a, b] in blunt().flat_map(|crease| [crease.flats, [crease.flats[1], crease.flats[0]]]) {
+            is_plane[a] &= flats[a].area > PLANE * flats[b].area;
+        }
         let mut sets = DisjointSets::new(flats.len());
-        for crease in creases.iter().filter(|crease| crease.turn < SHARP.to_radians()) {
-            sets.union(crease.flats[0] as u32, crease.flats[1] as u32);
+        for [a, b] in
+            blunt().map(|crease| crease.flats).filter(|pair| pair.iter().all(|flat| !is_plane[*flat]))
+        {
+            sets.union(a as u32, b as u32);
         }
         let mut members = vec![Vec::new(); flats.len()];
         (0..flats.len()).for_each(|flat| members[sets.find(flat as u32) as usize].push(flat));
@@ -172,13 +193,11 @@ impl SmoothRegions {
         let mut of_flat = vec![0; flats.len()];
         members.iter().enumerate().for_each(|(i, flats)| flats.iter().for_each(|&flat| of_flat[flat] = i));
         let mut corners = vec![Vec::new(); members.len()];
-        for crease in &creases {
-            let [region, other] = crease.flats.map(|flat| of_flat[flat]);
-            if region == other {
-                corners[region].extend(crease.ends);
-            }
+        for crease in blunt() {
+            let regions = crease.flats.map(|flat| of_flat[flat]);
+            let is_inside = regions[0] == regions[1];
+            regions.iter().for_each(|&region| corners[region].extend(crease.ends.map(|p| (p, is_inside))));
         }
-        let total = mesh.area();
         let (mut plain, mut wide) = (0.0, 0);
         let all: Vec<SmoothRegion> = members
             .iter()
@@ -192,7 +211,7 @@ impl SmoothRegions {
                 let is_plain = is_plane || matches!(region.shape, RegionShape::Cylinder { .. });
                 if is_plain && region.area > LARGE {
                     plain += region.area;
-                    wide += usize::from(is_plane && flat.faces.len() >= WIDE);
+                    wide += usize::from(is_plane && corners.is_empty() && flat.faces.len() >= WIDE);
                 }
                 region
             })
@@ -321,8 +340,13 @@ fn width(mesh: &TriMesh, flat: &Flat, [start, end]: [Point3<f64>; 2]) -> f64 {
     corners.map(|p| (p - start).cross(&along).norm()).fold(0.0, f64::max)
 }
 
-/// The region of some flats; `corners` are the ends of the edges between them.
-fn region(mesh: &TriMesh, flats: &[Flat], members: &[usize], corners: &[Point3<f64>]) -> SmoothRegion {
+/// The region of some flats. `corners` are the ends of their blunt edges, and whether these are inside the region.
+fn region(
+    mesh: &TriMesh,
+    flats: &[Flat],
+    members: &[usize],
+    corners: &[(Point3<f64>, bool)],
+) -> SmoothRegion {
     let area = members.iter().map(|&flat| flats[flat].area).sum();
     let shape = match members {
         [flat] => {
@@ -342,7 +366,7 @@ fn cylinder(
     mesh: &TriMesh,
     flats: &[Flat],
     members: &[usize],
-    corners: &[Point3<f64>],
+    corners: &[(Point3<f64>, bool)],
 ) -> Option<RegionShape> {
     let covariance: Matrix3<f64> = members
         .iter()
@@ -359,9 +383,11 @@ fn cylinder(
     let v = axis.cross(&u);
     let flat = |p: &Point3<f64>| Vector2::new(u.dot(&p.coords), v.dot(&p.coords));
     let faces = || members.iter().flat_map(|&flat| flats[flat].faces.iter().copied());
-    let corners: Vec<Vector2<f64>> = corners.iter().map(&flat).collect();
-    let center = center_of_circle(&corners)?;
-    let radius = corners.iter().map(|p| (p - center).norm()).fold(0.0, f64::max);
+    // A fillet of three flats has two edges inside; planes that touch it begin on the circle, too, and others on a chord.
+    let (center, radius) = [true, false].into_iter().find_map(|only_inside| {
+        let counted = corners.iter().filter(|(_, is_inside)| *is_inside || !only_inside);
+        circle(&counted.map(|(p, _)| flat(p)).collect::<Vec<_>>())
+    })?;
     // The corners of a rectangle are on a circle, too, but not what is between them.
     let middles = faces().flat_map(|f| {
         let [a, b, c] = mesh.triangle(f).map(|p| flat(&p));
@@ -381,7 +407,15 @@ fn cylinder(
     Some(RegionShape::Cylinder { axis: axis.into_inner(), radius, is_hole: outward < 0.0 })
 }
 
-/// The center of the circle nearest to points, in algebraic least squares (Kåsa 1976).
+/// The center and the radius of the circle through points, if there is one.
+fn circle(points: &[Vector2<f64>]) -> Option<(Vector2<f64>, f64)> {
+    let center = center_of_circle(points)?;
+    let radii = points.iter().map(|p| (p - center).norm());
+    let (radius, least) = (radii.clone().fold(0.0, f64::max), radii.fold(f64::INFINITY, f64::min));
+    (least > (1.0 - ON_CIRCLE) * radius).then_some((center, radius))
+}
+
+/// The center of the circle nearest to points, in algebraic least squares (Kåsa 1976); `None` for points on a line.
 fn center_of_circle(points: &[Vector2<f64>]) -> Option<Vector2<f64>> {
     let mean = points.iter().sum::<Vector2<f64>>() / points.len().max(1) as f64;
     let (mut matrix, mut right) = (Matrix2::zeros(), Vector2::zeros());
@@ -391,5 +425,6 @@ fn center_of_circle(points: &[Vector2<f64>]) -> Option<Vector2<f64>> {
         matrix += d * d.transpose();
         right += d * (0.5 * (d.norm_squared() - mean_square));
     }
-    Some(mean + matrix.try_inverse()? * right)
+    let is_line = matrix.determinant() < ON_LINE * matrix.trace().powi(2);
+    Some(mean + matrix.try_inverse().filter(|_| !is_line)? * right)
 }

@@ -12,6 +12,7 @@ mod noise;
 mod orientation;
 mod points;
 mod refine;
+mod regions;
 mod repair;
 mod shortcuts;
 mod t_junctions;
