@@ -112,7 +112,7 @@ def mean(errors):
 def section(args):
     meshes = sorted(glob.glob(os.path.join(args.data, "tosca-hires", "*.ply")))
     if not meshes:
-        sys.exit(f"{args.data}/tosca-hires is missing: pass --data FOLDER")
+        sys.exit(f"{args.data}/tosca-hires is missing: set CANONFORM_DATA to its folder")
     originals = {os.path.basename(path)[:-4]: path for path in meshes}
     groups = {"built-in men": None, "david of TOSCA": "david", "cats of TOSCA": "cat", "gorillas of TOSCA": "gorilla"}
     cells, lines = {"canonform": [], "pyFM": []}, []

@@ -73,7 +73,7 @@ def test_meshes(data):
     paths = {title: os.path.join(data, path) for title, path in meshes.items()}
     for path in paths.values():
         if not os.path.exists(path):
-            sys.exit(f"{path} is missing: pass --data FOLDER with tosca-lowres/, tosca-hires/ and single/")
+            sys.exit(f"{path} is missing: set CANONFORM_DATA to the folder of tosca-lowres, tosca-hires and single")
     return paths
 
 
