@@ -1,7 +1,6 @@
 //! Triangles, laid out in the order in which the front reads them.
 
 use std::collections::HashMap;
-use std::f64::consts::{PI, TAU};
 
 use rayon::prelude::*;
 use surface::{
@@ -226,12 +225,12 @@ fn kinds(triangles: &[MarchTriangle], corners: &Rows<CornerId>) -> Vec<[bool; 2]
         across(*side) == *side || (at(*side).is_irregular() && across(across(*side)) != *side)
     };
     let kind = |v: usize| {
-        let (mut angle, mut n_free) = (0.0, 0);
-        for corner in corners.row(v) {
-            n_free += [corner.next(), corner.prev()].iter().filter(|side| is_free(side)).count();
+        let sides = corners.row(v).iter().flat_map(|corner| [corner.next(), corner.prev()]);
+        let n_free = sides.filter(is_free).count();
+        let angles = corners.row(v).iter().map(|corner| {
             let [opposite, p, q] = [0, 1, 2].map(|step| at(*corner).lengths[(corner.slot() + step) % 3]);
-            angle += areas[corner.face().index()].atan2(scalar_product(opposite, p, q));
-        }
+            [scalar_product(opposite, p, q), areas[corner.face().index()]]
+        });
         let first = corners.row(v).first().filter(|_| n_free == 0);
         let is_inside = first.is_some_and(|first| {
             // Around the vertex, until the first corner comes again.
@@ -247,9 +246,25 @@ fn kinds(triangles: &[MarchTriangle], corners: &Rows<CornerId>) -> Vec<[bool; 2]
             }
         });
         let has_fans = n_free > 2 || (first.is_some() && !is_inside);
-        [angle > EXCESS + if is_inside { TAU } else { PI }, has_fans]
+        [exceed(angles, if is_inside { 2 } else { 1 }), has_fans]
     };
     (0..corners.n_rows()).into_par_iter().map(kind).collect()
+}
+
+/// Whether angles are more than so many half turns together. Each is given by a multiple of its cosine and sine: products of complex
+/// numbers take a fraction of the time of arc tangents.
+fn exceed(angles: impl Iterator<Item = PlanePoint>, half_turns: usize) -> bool {
+    // The sum is this direction, which is never below the axis, after so many half turns.
+    let ([mut x, mut y], mut n) = ([1.0, 0.0], 0);
+    for [cos, sin] in angles {
+        [x, y] = [x * cos - y * sin, x * sin + y * cos];
+        if y < 0.0 || (y == 0.0 && x < 0.0) {
+            ([x, y], n) = ([-x, -y], n + 1);
+        }
+        let size = x.abs() + y;
+        [x, y] = [x / size, y / size];
+    }
+    n > half_turns || (n == half_turns && y > EXCESS * x)
 }
 
 impl Triangles {
