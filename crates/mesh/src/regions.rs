@@ -27,9 +27,6 @@ const MAX_CORNERS: usize = 64;
 /// Normals of a cylinder are this near to a plane, in the mean square, relative to how they turn in it. A tolerance.
 const ACROSS: f64 = 1e-3;
 
-/// Edges along a cylinder have the same distance from its axis but for this share. A tolerance of rounding.
-const ON_CIRCLE: f64 = 0.01;
-
 /// Points are on a line if the product of their moments is less than this share of the square of the sum, as on an arc of 4°, whose
 /// radius is not known. A tolerance.
 const ON_LINE: f64 = 1e-4;
@@ -149,6 +146,9 @@ impl SmoothRegions {
     /// Distances from the axis of a cylinder differ by less than this share: the middles of twelve chords are at cos 15° of the
     /// radius. A tolerance.
     pub const ROUND: f64 = 0.05;
+
+    /// Points of a circle have the same distance from its center but for this share. A tolerance of rounding.
+    pub const ON_CIRCLE: f64 = 0.01;
 
     /// Finds the pieces.
     ///
@@ -412,7 +412,7 @@ fn circle(points: &[Vector2<f64>]) -> Option<(Vector2<f64>, f64)> {
     let center = center_of_circle(points)?;
     let radii = points.iter().map(|p| (p - center).norm());
     let (radius, least) = (radii.clone().fold(0.0, f64::max), radii.fold(f64::INFINITY, f64::min));
-    (least > (1.0 - ON_CIRCLE) * radius).then_some((center, radius))
+    (least > (1.0 - SmoothRegions::ON_CIRCLE) * radius).then_some((center, radius))
 }
 
 /// The center of the circle nearest to points, in algebraic least squares (Kåsa 1976); `None` for points on a line.

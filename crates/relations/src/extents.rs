@@ -3,9 +3,6 @@
 use mesh::SmoothRegions;
 use nalgebra::{Point3, Vector2, Vector3};
 
-/// Radii of one circle differ by less than this share: a tolerance of rounding.
-const ONE_RADIUS: f64 = 1e-3;
-
 /// Extents along a direction and across it, descending. Those across are the sides of the smallest rectangle around what is seen
 /// along the direction, or the diameter if that is a circle.
 pub(super) fn extents(points: &[Point3<f64>], direction: &Vector3<f64>) -> [f64; 3] {
@@ -64,7 +61,7 @@ fn diameter(outline: &[Vector2<f64>]) -> Option<f64> {
     let radius = radii.clone().fold(0.0, f64::max);
     let is_round =
         sides(outline).all(|[a, b]| (0.5 * (a + b) - center).norm() > (1.0 - SmoothRegions::ROUND) * radius);
-    (is_round && length(radii) < ONE_RADIUS * radius).then_some(2.0 * radius)
+    (is_round && length(radii) < SmoothRegions::ON_CIRCLE * radius).then_some(2.0 * radius)
 }
 
 /// The sides of the rectangle with the least area around an outline. It has one of its sides on one of the outline.

@@ -205,6 +205,12 @@ impl MeshGeometry {
         self.surface.is_mechanical()
     }
 
+    /// Whether it is mechanical without noise, which breaks planes and cylinders up: holes and steps of a noisy part are not those that
+    /// it has.
+    pub(super) fn is_exact_part(&self) -> bool {
+        self.is_mechanical() && !self.has_noisy_planes()
+    }
+
     /// Whether vertices have noise that is independent of their neighbors'.
     pub(super) fn is_noisy(&self) -> bool {
         *self.noisy.get_or_init(|| is_noisy(self.mesh()))

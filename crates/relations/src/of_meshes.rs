@@ -205,6 +205,9 @@ impl Relation {
             self.changes.clear();
             return Self { kind: RelationKind::Variant, confidence: VARIANT, ..self };
         }
+        if meshes.iter().all(|mesh| mesh.is_exact_part()) {
+            self.evidence.same_shape = 0.0;
+        }
         if meshes.iter().any(|mesh| mesh.is_mechanical()) { self.without_poses() } else { self }
     }
 }

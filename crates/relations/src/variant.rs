@@ -141,9 +141,7 @@ fn steps(regions: &[SmoothRegion], direction: &Vector3<f64>) -> Vec<f64> {
 /// In what two mechanical parts differ, if they are variants of one part. `rms` is how far their surfaces are apart, if
 /// they can be laid over each other at one size.
 pub(super) fn differences([a, b]: [&MeshGeometry; 2], rms: Option<f64>) -> Option<Vec<Difference>> {
-    // Noise breaks planes and cylinders up, so that holes and steps of a noisy part are not those that it has.
-    let is_exact = |part: &MeshGeometry| part.is_mechanical() && !part.has_noisy_planes();
-    if !(is_exact(a) && is_exact(b)) {
+    if !(a.is_exact_part() && b.is_exact_part()) {
         return None;
     }
     let [a, b] = [a, b].map(Dimensions::new);
