@@ -85,9 +85,10 @@ def judged(found, of):
         originals = [of[id] for id in [group["keeper"]["id"], *(member["id"] for member in members)]]
         told += len(originals) - len(set(originals))
         for member in members:
-            # Some parts are others at another size, or their mirror images.
+            # Some parts are others at another size, or their mirror images, as screws of either hand.
             is_alike = {"scaled", "mirrored"} & set(member["relation"]["changes"])
-            if of[member["id"]] != of[member["of"]] and not is_alike:
+            part, other = (of[member[end]].replace("-h-1", "-h1") for end in ("id", "of"))
+            if part != other and not is_alike:
                 false.append((member["of"], member["id"], member["relation"]["text"]))
     return told, false
 
