@@ -19,11 +19,10 @@ fn planes_that_go_over_into_fillets_are_planes() {
 #[test]
 fn only_what_goes_around_an_axis_is_a_cylinder() {
     let radius = |mesh: &TriMesh| {
-        let found = SmoothRegions::of(mesh).all.into_iter().find_map(|region| match region.shape {
+        SmoothRegions::of(mesh).all.into_iter().find_map(|region| match region.shape {
             RegionShape::Cylinder { radius, .. } => Some(radius),
             _ => None,
-        });
-        found
+        })
     };
     let pipe = shapes::cylinder(20, 4, 1.5, 3.0);
     assert!((radius(&pipe).unwrap() - 1.5).abs() < 1e-9);
