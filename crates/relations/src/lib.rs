@@ -123,7 +123,7 @@ impl Relation {
     /// The relation of parts of machines: they do not bend, so that another pose is not what their distance may say.
     #[must_use]
     pub fn without_poses(mut self) -> Self {
-        if matches!(self.kind, RelationKind::OtherPose | RelationKind::SameClass) {
+        if self.kind == RelationKind::OtherPose {
             self.changes.clear();
             (self.kind, self.confidence) = (RelationKind::SameClass, self.evidence.same_class);
         }

@@ -205,9 +205,14 @@ impl Relation {
             self.changes.clear();
             return Self { kind: RelationKind::Variant, confidence: VARIANT, ..self };
         }
+        let is_mechanical = meshes.iter().any(|mesh| mesh.is_mechanical());
+        let mut found = if is_mechanical { self.without_poses() } else { self };
         if meshes.iter().all(|mesh| mesh.is_exact_part()) {
-            self.evidence.same_shape = 0.0;
+            found.evidence.same_shape = 0.0;
+            if found.kind == RelationKind::SameClass {
+                found.confidence = found.evidence.same_class;
+            }
         }
-        if meshes.iter().any(|mesh| mesh.is_mechanical()) { self.without_poses() } else { self }
+        found
     }
 }
