@@ -132,8 +132,7 @@ def section(args):
     n = [row["n"] for row in searched]
     per_shape = (stored[-1][2] - stored[-2][2]) / (stored[-1][0] - stored[-2][0])
     per_vector = (searched[-1]["memory"] - searched[-2]["memory"]) / (n[-1] - n[-2]) * 1e6
-    # Comparing classes takes as long for any number of shapes.
-    merge = np.polyfit([row[0] for row in stored[-2:]], [row[5] for row in stored[-2:]], 1)
+    merge = power([row[0] for row in stored], [row[5] for row in stored], 1)
     at = lambda fit, x: fit[1] * x ** fit[0]
     latency = power(n, [row["ms"][0] for row in searched], 1)
     mean_file = float(np.interp(np.log(sizes.mean()), np.log([r[0] for r in described]), [r[3] for r in described]))
@@ -163,7 +162,7 @@ def section(args):
          f"{(1 - capped.sum() / total) * 100:.0f} %"),
         ("the largest shape", "memory of a worker", f"{digits(described[-1][2])} MB at {described[-1][0]:,} vertices", "`--memory`"),
         ("reading", "the file system", f"{1.024 * mean_file / (total / SHAPES):.1f} GB/s for 1,024 cores", "binary formats"),
-        ("merging", "one process and disk", f"{np.polyval(merge, SHAPES) / 60:,.0f} minutes, {per_shape * SHAPES / 1e9:,.0f} GB",
+        ("merging", "one process and disk", f"{at(merge, SHAPES) / 60:,.0f} minutes, {per_shape * SHAPES / 1e9:,.0f} GB",
          "several indexes"),
         ("search", "memory", f"{per_vector * SHAPES / 1e9:.0f} GB, {digits(at(latency, SHAPES))} ms, and "
                              f"{1000 * stored[-1][3]:.0f} ms for alignment",
