@@ -298,10 +298,7 @@ mod tests {
     fn a_soup_of_triangles_is_the_same_geometry_also_with_cracks() {
         let ball = shapes::icosphere(2);
         for crack in [0.0, 1e-6] {
-            let mut soup = TriMesh {
-                positions: (0..ball.n_faces()).flat_map(|f| ball.triangle(f)).collect(),
-                faces: (0..ball.n_faces()).map(|f| [0, 1, 2].map(|i| VertexId::from(3 * f + i))).collect(),
-            };
+            let mut soup = testkit::soup(&ball);
             soup.positions.iter_mut().enumerate().for_each(|(i, p)| p.x += crack * (i as f64).sin());
             let [a, b] = [&ball, &soup].map(|mesh| MeshGeometry::new(mesh, None).unwrap());
             assert_eq!((a.n_vertices(), a.n_faces()), (b.n_vertices(), b.n_faces()));
