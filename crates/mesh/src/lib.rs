@@ -58,7 +58,7 @@ pub use orientation::orient_consistently;
 pub use outward::{oriented_faces, outward};
 pub use points::{PointsReport, TriangulatedPoints, triangulate_points};
 pub use refine::refine;
-pub use regions::{RegionShape, SmoothRegion, SmoothRegions};
+pub use regions::{RegionShape, SmoothRegion, SmoothRegions, circle_through};
 pub use remap::{Remap, Remapped};
 pub use repair::{
     ComponentPolicy, FacePart, Orient, RepairOptions, RepairReport, Repaired, Weld, coordinate_spacing,

@@ -27,6 +27,9 @@ const MAX_CORNERS: usize = 64;
 /// Normals of a cylinder are this near to a plane, in the mean square, relative to how they turn in it. A tolerance.
 const ACROSS: f64 = 1e-3;
 
+/// Points of a circle have the same distance from its center but for this share. A tolerance of rounding.
+const ON_CIRCLE: f64 = 0.01;
+
 /// Points are on a line if the product of their moments is less than this share of the square of the sum, as on an arc of 4°, whose
 /// radius is not known. A tolerance.
 const ON_LINE: f64 = 1e-4;
@@ -147,9 +150,6 @@ impl SmoothRegions {
     /// radius. A tolerance.
     pub const ROUND: f64 = 0.05;
 
-    /// Points of a circle have the same distance from its center but for this share. A tolerance of rounding.
-    pub const ON_CIRCLE: f64 = 0.01;
-
     /// Finds the pieces.
     ///
     /// # Panics
@@ -175,9 +175,11 @@ impl SmoothRegions {
         let creases = creases(mesh, &topology, &flats, &of_face);
         let total = mesh.area();
         let blunt = || creases.iter().filter(|crease| crease.turn < SHARP.to_radians());
-        // A plane that goes over into rounded edges is none of their flats.
-        let mut is_plane: Vec<bool> =
+        // A triangle is a plane by itself, divided or not; organic meshes of few triangles have many.
+        let is_large: Vec<bool> =
             flats.iter().map(|flat| flat.area > LARGE && !flat.is_triangle(mesh, total)).collect();
+        // A plane that goes over into rounded edges is none of their flats.
+        let mut is_plane = is_large.clone();
         for [a, b] in blunt().flat_map(|crease| [crease.flats, [crease.flats[1], crease.flats[0]]]) {
             is_plane[a] &= flats[a].area > PLANE * flats[b].area;
         }
@@ -204,14 +206,11 @@ impl SmoothRegions {
             .zip(&corners)
             .map(|(members, corners)| {
                 let region = region(mesh, &flats, members, corners);
-                // A triangle is a plane by itself, divided or not; organic meshes of few triangles have many.
-                let flat = &flats[members[0]];
-                let is_plane =
-                    matches!(region.shape, RegionShape::Plane { .. }) && !flat.is_triangle(mesh, total);
-                let is_plain = is_plane || matches!(region.shape, RegionShape::Cylinder { .. });
-                if is_plain && region.area > LARGE {
+                let is_plane = matches!(region.shape, RegionShape::Plane { .. }) && is_large[members[0]];
+                if is_plane || (matches!(region.shape, RegionShape::Cylinder { .. }) && region.area > LARGE) {
                     plain += region.area;
-                    wide += usize::from(is_plane && corners.is_empty() && flat.faces.len() >= WIDE);
+                    let n_faces = flats[members[0]].faces.len();
+                    wide += usize::from(is_plane && corners.is_empty() && n_faces >= WIDE);
                 }
                 region
             })
@@ -386,7 +385,7 @@ fn cylinder(
     // A fillet of three flats has two edges inside; planes that touch it begin on the circle, too, and others on a chord.
     let (center, radius) = [true, false].into_iter().find_map(|only_inside| {
         let counted = corners.iter().filter(|(_, is_inside)| *is_inside || !only_inside);
-        circle(&counted.map(|(p, _)| flat(p)).collect::<Vec<_>>())
+        circle_through(&counted.map(|(p, _)| flat(p)).collect::<Vec<_>>())
     })?;
     // The corners of a rectangle are on a circle, too, but not what is between them.
     let middles = faces().flat_map(|f| {
@@ -408,11 +407,11 @@ fn cylinder(
 }
 
 /// The center and the radius of the circle through points, if there is one.
-fn circle(points: &[Vector2<f64>]) -> Option<(Vector2<f64>, f64)> {
+pub fn circle_through(points: &[Vector2<f64>]) -> Option<(Vector2<f64>, f64)> {
     let center = center_of_circle(points)?;
     let radii = points.iter().map(|p| (p - center).norm());
     let (radius, least) = (radii.clone().fold(0.0, f64::max), radii.fold(f64::INFINITY, f64::min));
-    (least > (1.0 - SmoothRegions::ON_CIRCLE) * radius).then_some((center, radius))
+    (least > (1.0 - ON_CIRCLE) * radius).then_some((center, radius))
 }
 
 /// The center of the circle nearest to points, in algebraic least squares (Kåsa 1976); `None` for points on a line.

@@ -1,6 +1,6 @@
 //! Overall dimensions of a part, wherever it lies.
 
-use mesh::SmoothRegions;
+use mesh::{SmoothRegions, circle_through};
 use nalgebra::{Point3, Vector2, Vector3};
 
 /// Extents along a direction and across it, descending. Those across are the sides of the smallest rectangle around what is seen
@@ -53,15 +53,9 @@ fn sides(outline: &[Vector2<f64>]) -> impl Iterator<Item = [Vector2<f64>; 2]> + 
 
 /// The diameter of an outline that is a circle.
 fn diameter(outline: &[Vector2<f64>]) -> Option<f64> {
-    let weighted = |[a, b]: [Vector2<f64>; 2]| (0.5 * (a + b) * (b - a).norm(), (b - a).norm());
-    let (sum, around) =
-        sides(outline).map(weighted).fold((Vector2::zeros(), 0.0), |x, y| (x.0 + y.0, x.1 + y.1));
-    let center = sum / around;
-    let radii = outline.iter().map(|p| (p - center).norm());
-    let radius = radii.clone().fold(0.0, f64::max);
-    let is_round =
-        sides(outline).all(|[a, b]| (0.5 * (a + b) - center).norm() > (1.0 - SmoothRegions::ROUND) * radius);
-    (is_round && length(radii) < SmoothRegions::ON_CIRCLE * radius).then_some(2.0 * radius)
+    let (center, radius) = circle_through(outline)?;
+    let least = (1.0 - SmoothRegions::ROUND) * radius;
+    sides(outline).all(|[a, b]| (0.5 * (a + b) - center).norm() > least).then_some(2.0 * radius)
 }
 
 /// The sides of the rectangle with the least area around an outline. It has one of its sides on one of the outline.
