@@ -14,7 +14,7 @@ use std::collections::HashMap;
 use base::{Budget, Exceeded, Observer};
 use nalgebra::Point3;
 use surface::{
-    Components, DisjointSets, FaceId, IntrinsicMesh, Link, Topology, VertexId, components_of_faces,
+    Components, DisjointSets, EdgeId, IntrinsicMesh, Link, Topology, VertexId, components_of_faces,
 };
 
 use crate::error::MeshError;
@@ -132,7 +132,10 @@ pub fn repair(
         let whole = parents.get(&VertexId::sorted(*face))?;
         Some([VertexId::sorted(kept(face)?), kept(whole)?])
     };
-    let mut parts: Vec<FacePart> = faces.iter().filter_map(part).collect();
+    let mut parts: Vec<FacePart> = match parents.is_empty() {
+        true => Vec::new(),
+        false => faces.iter().filter_map(part).collect(),
+    };
     parts.sort_unstable();
     let positions = sources.iter().map(|v| mesh.positions[v.index()]).collect();
     let mut repaired = TriMesh { faces: left.collect(), positions };
@@ -319,14 +322,12 @@ pub fn coordinate_spacing<'p>(positions: impl Iterator<Item = &'p Point3<f64>>) 
 /// The [spacing](coordinate_spacing) of the coordinates of all faces, relative to the mean side of the faces. Positions are in units
 /// of length, powers of two.
 fn coordinate_rounding(positions: &[Point3<f64>], surface: &IntrinsicMesh, unit: f64) -> (f64, bool) {
-    let faces = surface.topology().faces();
-    let mut sides = 0.0;
-    for f in 0..faces.len() {
-        let [bc, ca, ab] = FaceId(f as u32).corners().map(|corner| surface.opposite_length(corner) / unit);
-        sides += ab + bc + ca;
-    }
-    let (spacing, is_single) = coordinate_spacing(faces.iter().flatten().map(|v| &positions[v.index()]));
-    (spacing * 3.0 * faces.len() as f64 / sides, is_single)
+    let topology = surface.topology();
+    let edges = (0..topology.n_edges()).map(EdgeId::from);
+    let sides: f64 = edges.map(|e| topology.edge_corners(e).len() as f64 * (surface.length(e) / unit)).sum();
+    let used = (0..).map(VertexId).zip(positions).filter(|(v, _)| !topology.vertex_corners(*v).is_empty());
+    let (spacing, is_single) = coordinate_spacing(used.map(|(_, position)| position));
+    (spacing * 3.0 * topology.n_faces() as f64 / sides, is_single)
 }
 
 fn disconnected(components: &Components) -> MeshError {
