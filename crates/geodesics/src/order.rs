@@ -8,8 +8,14 @@ const PATCH: usize = 64;
 /// Vertices in patches of neighbors, along edges and links, that grow breadth-first, one next to the other. A front,
 /// whatever its source, passes few patches at a time, where it would pass all of the rings of a breadth-first order.
 pub(crate) fn patches_of(mesh: &IntrinsicMesh) -> Vec<u32> {
-    let (n, graph) = (mesh.n_vertices(), EdgeGraph::of(mesh));
-    let neighbors = |v: u32| graph.ways(VertexId(v)).iter().map(|way| way.to.0);
+    let (n, topology) = (mesh.n_vertices(), mesh.topology());
+    let links = EdgeGraph::new(n, mesh.links().iter().copied());
+    // Most neighbors come twice, which costs less than to list the edges at every vertex.
+    let neighbors = |v: u32| {
+        let corners = topology.vertex_corners(VertexId(v)).iter();
+        let around = corners.flat_map(|corner| topology.edge_ends(*corner));
+        around.chain(links.ways(VertexId(v)).iter().map(|way| way.to)).map(|u| u.0)
+    };
     let mut is_visited = vec![false; n];
     let mut order = Vec::with_capacity(n);
     let (mut waiting, mut next, mut lowest) = (Vec::new(), 0, 0);
@@ -37,7 +43,8 @@ pub(crate) fn patches_of(mesh: &IntrinsicMesh) -> Vec<u32> {
             }
             head += 1;
         }
-        for v in &order[start..] {
+        // All neighbors of those before are in the order.
+        for v in &order[head..] {
             waiting.extend(neighbors(*v).filter(|u| !is_visited[*u as usize]));
         }
     }
