@@ -1,0 +1,45 @@
+//! What becomes of shapes whose files are gone.
+
+use std::collections::HashSet;
+use std::path::Path;
+
+use collection::{SkipKind, Skipped};
+use index::Entry;
+
+use super::report::BuildReport;
+use crate::shape_index::place::Root;
+
+/// Decides what becomes of shapes of an index whose files were not found.
+pub(super) struct Missing<'a> {
+    root: &'a Root<'a>,
+    prune: bool,
+    /// Paths, as the index states them, at and below which nothing can be read now.
+    unreadable: Vec<String>,
+    /// Names of files that were found and cannot be read.
+    pub(super) unread: HashSet<String>,
+}
+
+impl<'a> Missing<'a> {
+    pub(super) fn new(root: &'a Root<'a>, prune: bool, skipped: &[Skipped]) -> Self {
+        let is_unreadable =
+            |skipped: &&Skipped| matches!(skipped.kind, SkipKind::Unreadable | SkipKind::BrokenLink);
+        let unreadable = skipped.iter().filter(is_unreadable).map(|skipped| root.text(&skipped.path));
+        Self { root, prune, unreadable: unreadable.collect(), unread: HashSet::new() }
+    }
+
+    /// Whether a shape stays; counts what becomes of it. A file that cannot be read is not gone.
+    pub(super) fn stays(&self, entry: &Entry, report: &mut BuildReport) -> bool {
+        let is_below = |place: &String| Path::new(&entry.path).starts_with(place);
+        if self.unread.contains(&entry.id) || self.unreadable.iter().any(is_below) {
+            report.unreadable.push(entry.id.clone());
+            return true;
+        }
+        let (count, stays) = match (self.root.contains_source(&entry.id, &entry.path), self.prune) {
+            (true, _) => (&mut report.removed, false),
+            (false, true) => (&mut report.pruned, false),
+            (false, false) => (&mut report.elsewhere, true),
+        };
+        *count += 1;
+        stays
+    }
+}
