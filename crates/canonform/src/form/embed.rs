@@ -7,7 +7,7 @@ use base::Observer;
 use geodesics::{FirstSample, Observed};
 use mesh::{InputMap, Surface};
 use nmds::DistanceRows;
-use surface::{IntrinsicMesh, VertexId};
+use surface::IntrinsicMesh;
 
 use super::distances::{Measurement, Samples, plan};
 use super::embedded::Embedded;
@@ -16,7 +16,7 @@ use super::options::FormOptions;
 use super::outcome::Outcome;
 use super::report::{EmbedReport, SecondsReport};
 use super::stress::{SolvedRows, StressChoice, StressOptions, StressReport};
-use crate::error::{Error, Remedy};
+use crate::error::Error;
 
 /// What [`embed`] embeds: a [`Surface`], or the parts of one, [without its mesh](Surface::into_parts), which needs less memory.
 pub struct EmbedInput<'a> {
@@ -137,13 +137,7 @@ pub fn embed<'a, 'b>(
         FirstSample::Farthest => FirstSample::Farthest,
         FirstSample::Vertex(input) => FirstSample::Vertex(map.repaired_vertex(input)?),
     };
-    if !options.method.has_unit() && options.samples == Samples::Auto {
-        let what = format!(
-            "how many samples {} needs cannot be measured, since its coordinates are no lengths",
-            options.method.name()
-        );
-        return Err(Error::Refused { what, remedy: Some(Remedy::GiveSamples) });
-    }
+    options.check_samples()?;
     if options.method.streams() {
         plan(surface.n_vertices(), options.samples).check(&observer.budget())?;
     }
@@ -174,49 +168,30 @@ pub fn embed<'a, 'b>(
     let (elapsed, geodesics) = (start.elapsed().as_secs_f64(), measurement.seconds.get());
 
     let start = Instant::now();
-    let other = against.zip(surface.as_deref());
-    let other = other.map(|(method, surface)| method.prepare(surface, observer)).transpose()?;
-    let other = other.as_ref().map(|solver| Observed { solver: solver.as_ref(), observer });
-    let solved = SolvedRows(other.as_ref().unwrap_or(&solver));
-    let rows: (&dyn DistanceRows, bool) = match (&all, &other) {
-        (Some(all), None) => (all, true),
-        _ => (&solved, false),
+    let stress = if measures {
+        let distances = (&distances, options.samples == Samples::Auto);
+        let other = against.zip(surface.as_deref());
+        let other = other.map(|(method, surface)| method.prepare(surface, observer)).transpose()?;
+        let other = other.as_ref().map(|solver| Observed { solver: solver.as_ref(), observer });
+        let solved = SolvedRows(other.as_ref().unwrap_or(&solver));
+        let rows: (&dyn DistanceRows, bool) = match (&all, &other) {
+            (Some(all), None) => (all, true),
+            _ => (&solved, false),
+        };
+        let method = against.unwrap_or(options.geodesic);
+        Some(StressReport::against(rows, method, &embedding.coords, distances, &stress, observer)?)
+    } else {
+        None
     };
-    let (method, samples) =
-        (against.unwrap_or(options.geodesic), (&distances, options.samples == Samples::Auto));
-    let stress = measures
-        .then(|| StressReport::against(rows, method, &embedding.coords, samples, &stress, observer))
-        .transpose()?;
-    drop(all);
-    let is_sampled = options.method.is_sampled();
-    let samples = if is_sampled { distances.landmarks() } else { &[] };
-    let report = EmbedReport {
-        method: options.method.name(),
-        geodesic: options.geodesic.name(),
-        sampling: is_sampled.then(|| options.sampling.name()),
-        regularization: options.method.regularization().map(|chosen| chosen.name()),
-        n_vertices: map.report.input_vertices,
-        n_faces: map.report.input_faces,
-        n_embedded: embedding.n_points(),
-        n_samples: if is_sampled { samples.len() } else { embedding.n_points() },
-        rank: embedding.rank,
-        dim: embedding.dim(),
-        samples: samples.iter().map(|&v| map.remap.to_old(VertexId::from(v)).0).collect(),
-        eigenvalues: embedding.eigenvalues.clone(),
-        negative_mass: embedding.negative_mass,
-        empty_dimensions: embedding.dim() - embedding.positive_dims(),
-        auto: search,
-        stress,
-        descent,
-        seconds: SecondsReport {
-            load: map.load_seconds,
-            repair: map.repair_seconds,
-            geodesics,
-            embedding: elapsed - geodesics,
-            stress: start.elapsed().as_secs_f64(),
-            total: map.load_seconds + map.repair_seconds + elapsed,
-        },
-        repair: map.report.clone(),
+    let seconds = SecondsReport {
+        load: map.load_seconds,
+        repair: map.repair_seconds,
+        geodesics,
+        embedding: elapsed - geodesics,
+        stress: start.elapsed().as_secs_f64(),
+        total: map.load_seconds + map.repair_seconds + elapsed,
     };
+    let report = EmbedReport::new(&options, map, &embedding, distances.landmarks(), seconds);
+    let report = EmbedReport { auto: search, stress, descent, ..report };
     Ok(Embedded { options, embedding, distances, report, extension })
 }

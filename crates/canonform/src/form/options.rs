@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::as_text;
 use super::distances::Samples;
 use super::method::EmbedMethod;
-use crate::error::Error;
+use crate::error::{Error, Remedy};
 
 /// Everything that decides the form of a mesh. It is stored with whatever is made of the form, as JSON without
 /// the options that have their default value, so that forms made in different ways are never compared.
@@ -64,6 +64,18 @@ impl FormOptions {
             self.seed = 0;
         }
         self
+    }
+
+    /// Refuses to search for the number of samples by a method whose coordinates are no lengths.
+    pub(super) fn check_samples(&self) -> Result<(), Error> {
+        if self.method.has_unit() || self.samples != Samples::Auto {
+            return Ok(());
+        }
+        let what = format!(
+            "how many samples {} needs cannot be measured, since its coordinates are no lengths",
+            self.method.name()
+        );
+        Err(Error::Refused { what, remedy: Some(Remedy::GiveSamples) })
     }
 
     /// Refuses options that make embeddings but no forms.

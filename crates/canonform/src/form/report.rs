@@ -1,9 +1,11 @@
 //! Facts about an embedding.
 
-use mesh::RepairReport;
-use nmds::{SamplesReport, SmacofReport};
+use mesh::{InputMap, RepairReport};
+use nmds::{Embedding, SamplesReport, SmacofReport};
 use serde::Serialize;
+use surface::VertexId;
 
+use super::options::FormOptions;
 use super::stress::StressReport;
 
 /// Facts about an embedding; `canonform embed --json` prints them.
@@ -47,6 +49,41 @@ pub struct EmbedReport {
     pub seconds: SecondsReport,
     /// What was repaired.
     pub repair: RepairReport,
+}
+
+impl EmbedReport {
+    /// The facts about an embedding by distances from `landmarks`, without its stress and what came before it.
+    pub(super) fn new(
+        options: &FormOptions,
+        map: &InputMap,
+        embedding: &Embedding,
+        landmarks: &[usize],
+        seconds: SecondsReport,
+    ) -> Self {
+        let is_sampled = options.method.is_sampled();
+        let samples = if is_sampled { landmarks } else { &[] };
+        Self {
+            method: options.method.name(),
+            geodesic: options.geodesic.name(),
+            sampling: is_sampled.then(|| options.sampling.name()),
+            regularization: options.method.regularization().map(|chosen| chosen.name()),
+            n_vertices: map.report.input_vertices,
+            n_faces: map.report.input_faces,
+            n_embedded: embedding.n_points(),
+            n_samples: if is_sampled { samples.len() } else { embedding.n_points() },
+            rank: embedding.rank,
+            dim: embedding.dim(),
+            samples: samples.iter().map(|&v| map.remap.to_old(VertexId::from(v)).0).collect(),
+            eigenvalues: embedding.eigenvalues.clone(),
+            negative_mass: embedding.negative_mass,
+            empty_dimensions: embedding.dim() - embedding.positive_dims(),
+            stress: None,
+            auto: None,
+            descent: None,
+            seconds,
+            repair: map.report.clone(),
+        }
+    }
 }
 
 /// Wall-clock seconds of the stages of an embedding.

@@ -127,25 +127,16 @@ pub fn repair(
         let [a, b, c] = face.map(|v| input_to_repaired[v.index()]);
         Some([a?, b?, c?])
     };
-    let left = faces.iter().filter_map(kept);
-    let part = |face: &[VertexId; 3]| {
-        let whole = parents.get(&VertexId::sorted(*face))?;
-        Some([VertexId::sorted(kept(face)?), kept(whole)?])
-    };
-    let mut parts: Vec<FacePart> = match parents.is_empty() {
-        true => Vec::new(),
-        false => faces.iter().filter_map(part).collect(),
-    };
-    parts.sort_unstable();
+    let parts = if parents.is_empty() { Vec::new() } else { face_parts(faces, &parents, kept) };
     let positions = sources.iter().map(|v| mesh.positions[v.index()]).collect();
-    let mut repaired = TriMesh { faces: left.collect(), positions };
+    let mut repaired = TriMesh { faces: faces.iter().filter_map(kept).collect(), positions };
     report.dropped_component_faces = faces.len() - repaired.n_faces();
 
     let mut links = Vec::new();
     if options.components == ComponentPolicy::Bridge && components.count > 1 {
+        let topology = Topology::new(sources.len(), repaired.faces.clone());
         let positions: Vec<Point3<f64>> = sources.iter().map(|v| scaled[v.index()]).collect();
         let labels: Vec<u32> = sources.iter().filter_map(|v| components.labels[v.index()]).collect();
-        let topology = Topology::new(positions.len(), repaired.faces.clone());
         links = bridge::links(&positions, &topology, &labels, &budget)?;
         links.iter_mut().for_each(|link| link.length *= unit);
         let in_input = |link: &Link| Link { ends: link.ends.map(|v| sources[v.index()]), ..*link };
@@ -160,6 +151,22 @@ pub fn repair(
     let intrinsic = if is_unchanged { surface } else { repaired.intrinsic() }.with_links(links);
     let remap = Remap::new(input_to_repaired, repaired.n_vertices());
     Ok(Repaired { mesh: repaired, intrinsic, remap, parts, report })
+}
+
+/// The faces that were cut at T-junctions, in ascending order, each with the face that it was a part of; `kept` gives the numbers after the
+/// repair.
+fn face_parts(
+    faces: &[[VertexId; 3]],
+    parents: &HashMap<[VertexId; 3], [VertexId; 3]>,
+    kept: impl Fn(&[VertexId; 3]) -> Option<[VertexId; 3]>,
+) -> Vec<FacePart> {
+    let part = |face: &[VertexId; 3]| {
+        let whole = parents.get(&VertexId::sorted(*face))?;
+        Some([VertexId::sorted(kept(face)?), kept(whole)?])
+    };
+    let mut parts: Vec<FacePart> = faces.iter().filter_map(part).collect();
+    parts.sort_unstable();
+    parts
 }
 
 /// A mesh under repair.
