@@ -68,17 +68,18 @@ impl RowSample {
     ) -> Result<Self, LinalgError> {
         let landmarks = distances.landmarks();
         let unit = unit_near(coords.amax());
-        let coords = coords / unit;
+        // A power of two, so that multiplication by its inverse is exact, and needs no other coordinates.
+        let scale = 1.0 / unit;
         let shares = shares(distances)?;
         // A number for every point, from its residuals with all landmarks, in blocks of points.
         let pass = |numbers: &(dyn Fn(Matrix, Range<usize>) -> Matrix + Sync)| {
             let of_block = |rows: Range<usize>| {
                 let mut block = distances.rows(rows.clone())?;
-                block.apply(|d| *d = (*d / unit).powi(2));
+                block.apply(|d| *d = (*d * scale).powi(2));
                 for (mut column, &landmark) in block.column_iter_mut().zip(landmarks) {
                     for z in coords.column_iter() {
                         let (at, points) = (z[landmark], &z.as_slice()[rows.clone()]);
-                        column.iter_mut().zip(points).for_each(|(r, x)| *r -= (x - at) * (x - at));
+                        column.iter_mut().zip(points).for_each(|(r, x)| *r -= (scale * (x - at)).powi(2));
                     }
                 }
                 Ok(numbers(block, rows).data.into())

@@ -107,8 +107,8 @@ struct RowSums {
 }
 
 impl RowSums {
-    /// Row `i`, with `offsets` subtracted from its residuals.
-    fn new(coords: &Matrix, distances: &[f64], i: usize, offsets: &[f64]) -> Self {
+    /// Row `i`, whose distances are given times `scale`, as coordinates are to be; `offsets` are subtracted from its residuals.
+    fn new(coords: &Matrix, distances: &[f64], i: usize, offsets: &[f64], scale: f64) -> Self {
         let (mut sums, n) = (Self::default(), distances.len() as f64);
         let mut part = vec![0.0; PART.min(distances.len())];
         for (start, distances) in (0..distances.len()).step_by(PART).zip(distances.chunks(PART)) {
@@ -117,7 +117,7 @@ impl RowSums {
             for column in coords.column_iter() {
                 let at = column[i];
                 let points = &column.as_slice()[start..];
-                part.iter_mut().zip(points).for_each(|(r, x)| *r -= (x - at) * (x - at));
+                part.iter_mut().zip(points).for_each(|(r, x)| *r -= (scale * (x - at)).powi(2));
             }
             for (&d, &r) in distances.iter().zip(&*part) {
                 // Without cancellation: d - |z| = (d^2 - |z|^2) / (d + |z|).
@@ -162,11 +162,12 @@ pub fn estimate_stress(
     let different = sample.rows();
     // The fourth powers of very short or very long lengths vanish or overflow.
     let unit = sample.unit.unwrap_or_else(|| unit_near(coords.amax()));
-    let coords = coords / unit;
+    // A power of two, so that multiplication by its inverse is exact.
+    let scale = 1.0 / unit;
     let of_row = |distances: &mut Vec<f64>, &i: &usize| {
         rows.row_into(i, distances)?;
-        distances.iter_mut().for_each(|distance| *distance /= unit);
-        Ok(RowSums::new(&coords, distances, i, &sample.offsets))
+        distances.iter_mut().for_each(|distance| *distance *= scale);
+        Ok(RowSums::new(coords, distances, i, &sample.offsets, scale))
     };
     let sums = different.par_iter().map_init(|| vec![0.0; rows.n_points()], of_row);
     let sums = sums.collect::<Result<Vec<_>, LinalgError>>()?;
