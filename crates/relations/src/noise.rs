@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use mesh::TriMesh;
 use nalgebra::{Matrix3, Point3, Vector3};
 use surface::{FaceId, Topology};
 
@@ -71,7 +72,7 @@ impl MeshGeometry {
             });
             let (mut planes, mut most) = (Vec::new(), MIN_PLANES);
             for tolerance in (0..=DOUBLINGS).map(|i| MAX_ROUNDING * 2f64.powi(i)) {
-                let [area, squares] = self.planes_within(tolerance, &topology, &vectors, &order);
+                let [area, squares] = Planes::new(mesh, &topology, &vectors, tolerance).grow_from(&order);
                 most = f64::max(most, area);
                 planes.push([area, squares]);
                 // A few vertices may lie in a plane by chance.
@@ -84,79 +85,105 @@ impl MeshGeometry {
             planes.first().map(|[area, squares]| (squares / area).sqrt())
         })
     }
+}
 
-    /// The area of planes within a tolerance, and the squared distances of vertices from them, times the areas.
-    /// `vectors` are the area vectors of faces, `order` has those with the largest first.
-    fn planes_within(
-        &self,
-        tolerance: f64,
-        topology: &Topology,
-        vectors: &[Vector3<f64>],
-        order: &[usize],
-    ) -> [f64; 2] {
-        let mesh = self.mesh();
-        let (mut is_taken, mut stamp) = (vec![false; vectors.len()], vec![usize::MAX; vectors.len()]);
-        let mut seen = vec![usize::MAX; mesh.n_vertices()];
+/// Planes within a tolerance, which grow one after the other.
+struct Planes<'a> {
+    mesh: &'a TriMesh,
+    topology: &'a Topology,
+    /// The area vectors of the faces.
+    vectors: &'a [Vector3<f64>],
+    tolerance: f64,
+    /// Whether a face is in a plane.
+    is_taken: Vec<bool>,
+    /// The seed of the last plane that reached a face, and that has a vertex.
+    reached: Vec<usize>,
+    seen: Vec<usize>,
+}
+
+/// What grew from a face.
+#[derive(Default)]
+struct Grown {
+    fit: Fit,
+    vertices: Vec<usize>,
+    area: f64,
+    /// Whether it met another one: then it is a curved surface.
+    meets_another: bool,
+    /// Lengths of the boundary at blunt and at sharp edges.
+    boundary: [f64; 2],
+}
+
+impl<'a> Planes<'a> {
+    fn new(mesh: &'a TriMesh, topology: &'a Topology, vectors: &'a [Vector3<f64>], tolerance: f64) -> Self {
+        let (n, p) = (vectors.len(), mesh.n_vertices());
+        let (reached, seen) = (vec![usize::MAX; n], vec![usize::MAX; p]);
+        Self { mesh, topology, vectors, tolerance, is_taken: vec![false; n], reached, seen }
+    }
+
+    /// The area of the planes that grow from faces in this order, and the squared distances of vertices from them, times the areas.
+    fn grow_from(mut self, order: &[usize]) -> [f64; 2] {
         let (mut area, mut squares) = (0.0, 0.0);
         for &seed in order {
-            if is_taken[seed] || vectors[seed].norm_squared() == 0.0 {
+            if self.is_taken[seed] || self.vectors[seed].norm_squared() == 0.0 {
                 continue;
             }
-            let (mut fit, mut vertices, mut own) = (Fit::default(), Vec::new(), 0.0);
-            let mut normal = vectors[seed].normalize();
-            let (mut center, mut next_fit, mut n_faces) = (mesh.triangle(seed)[0], 4, 0);
-            let (mut pending, mut is_whole) = (VecDeque::from([(seed, seed, 0.0)]), true);
-            // Lengths of the boundary at blunt and at sharp edges.
-            let mut boundary = [0.0; 2];
-            stamp[seed] = seed;
-            while let Some((f, from, length)) = pending.pop_front() {
-                let is_near = |p: &Point3<f64>| normal.dot(&(p - center)).abs() < tolerance;
-                let is_along = vectors[f].dot(&normal) > MIN_COSINE * vectors[f].norm();
-                if !(is_along && mesh.triangle(f).iter().all(is_near)) {
-                    let is_sharp = vectors[f].dot(&vectors[from])
-                        < MIN_COSINE * vectors[f].norm() * vectors[from].norm();
-                    boundary[usize::from(is_sharp)] += length;
-                    continue;
-                }
-                // What another plane has, too, is a curved surface.
-                if is_taken[f] {
-                    is_whole = false;
-                    continue;
-                }
-                is_taken[f] = true;
-                own += 0.5 * vectors[f].norm();
-                n_faces += 1;
-                for v in mesh.faces[f].map(|v| v.index()) {
-                    if std::mem::replace(&mut seen[v], seed) != seed {
-                        fit.add(&mesh.positions[v]);
-                        vertices.push(v);
-                    }
-                }
-                if n_faces == next_fit {
-                    let (middle, direction) = fit.plane();
-                    (center, normal) = (middle, direction * direction.dot(&normal).signum());
-                    next_fit *= 2;
-                }
-                for edge in FaceId::from(f).corners().map(|corner| topology.opposite_edge(corner)) {
-                    let [p, q] = topology.edges()[edge.index()].map(|v| mesh.positions[v.index()]);
-                    for g in topology.edge_corners(edge).iter().map(|other| other.face().index()) {
-                        if std::mem::replace(&mut stamp[g], seed) != seed {
-                            pending.push_back((g, f, (p - q).norm()));
-                        }
-                    }
-                }
-            }
-            if !is_whole || boundary[0] > boundary[1] || own < MIN_PLANE || vertices.len() < 4 {
+            let Grown { fit, vertices, area: own, meets_another, boundary } = self.grown(seed);
+            if meets_another || boundary[0] > boundary[1] || own < MIN_PLANE || vertices.len() < 4 {
                 continue;
             }
             let (center, normal) = fit.plane();
-            let gaps = || vertices.iter().map(|&v| normal.dot(&(mesh.positions[v] - center)));
-            if gaps().all(|gap| gap.abs() < MAX_GAP * tolerance) {
+            let gaps = || vertices.iter().map(|&v| normal.dot(&(self.mesh.positions[v] - center)));
+            if gaps().all(|gap| gap.abs() < MAX_GAP * self.tolerance) {
                 area += own;
                 squares += own * gaps().map(|gap| gap * gap).sum::<f64>() / (vertices.len() - 3) as f64;
             }
         }
         [area, squares]
+    }
+
+    /// The faces around a seed that lie in one plane, which is fitted again whenever they have doubled.
+    fn grown(&mut self, seed: usize) -> Grown {
+        let Self { mesh, topology, vectors, tolerance, .. } = *self;
+        let (mut grown, mut n_faces, mut next_fit) = (Grown::default(), 0, 4);
+        let (mut center, mut normal) = (mesh.triangle(seed)[0], vectors[seed].normalize());
+        let mut pending = VecDeque::from([(seed, seed, 0.0)]);
+        self.reached[seed] = seed;
+        while let Some((f, from, length)) = pending.pop_front() {
+            let is_near = |p: &Point3<f64>| normal.dot(&(p - center)).abs() < tolerance;
+            let is_along = vectors[f].dot(&normal) > MIN_COSINE * vectors[f].norm();
+            if !(is_along && mesh.triangle(f).iter().all(is_near)) {
+                let [cosine, norms] =
+                    [vectors[f].dot(&vectors[from]), vectors[f].norm() * vectors[from].norm()];
+                grown.boundary[usize::from(cosine < MIN_COSINE * norms)] += length;
+                continue;
+            }
+            if std::mem::replace(&mut self.is_taken[f], true) {
+                grown.meets_another = true;
+                continue;
+            }
+            grown.area += 0.5 * vectors[f].norm();
+            for v in mesh.faces[f].map(|v| v.index()) {
+                if std::mem::replace(&mut self.seen[v], seed) != seed {
+                    grown.fit.add(&mesh.positions[v]);
+                    grown.vertices.push(v);
+                }
+            }
+            n_faces += 1;
+            if n_faces == next_fit {
+                let (middle, direction) = grown.fit.plane();
+                (center, normal) = (middle, direction * direction.dot(&normal).signum());
+                next_fit *= 2;
+            }
+            for edge in FaceId::from(f).corners().map(|corner| topology.opposite_edge(corner)) {
+                let [p, q] = topology.edges()[edge.index()].map(|v| mesh.positions[v.index()]);
+                for g in topology.edge_corners(edge).iter().map(|other| other.face().index()) {
+                    if std::mem::replace(&mut self.reached[g], seed) != seed {
+                        pending.push_back((g, f, (p - q).norm()));
+                    }
+                }
+            }
+        }
+        grown
     }
 }
 
