@@ -71,9 +71,8 @@ fn bracket(solid: &mut Solid, v: &[f64]) {
     solid.cap(&front, &[], -Vector3::y());
     solid.cap(&back, &[], Vector3::y());
     let side = |i: usize| [front[i], front[(i + 1) % 6], back[(i + 1) % 6], back[i]];
-    for (end, up) in [(1, Vector3::x()), (4, Vector3::z())] {
-        solid.cap(&side(end), &[], up);
-    }
+    solid.cap(&side(1), &[], Vector3::x());
+    solid.cap(&side(4), &[], Vector3::z());
     // Seen against the direction of a leg, all its loops run the same way.
     for (leg, up, outer, inner) in [(length, Vector3::z(), 0, 2), (height, Vector3::x(), 5, 3)] {
         let mut rims: [Vec<Loop>; 2] = Default::default();
@@ -131,11 +130,8 @@ fn enclosure(solid: &mut Solid, v: &[f64]) {
     solid.cap(&top, &[rim], Vector3::z());
     let [x, y] = [length / 2.0 - 8.0, width / 2.0 - 8.0];
     let places = [[-x, -y], [x, y], [-x, y], [x, -y]];
-    let bores: Vec<[Loop; 2]> = places[..holes as usize]
-        .iter()
-        .map(|&at| solid.prism(&circle(at, FLOOR_HOLE / 2.0, arcs), [0.0, wall], true))
-        .collect();
-    let [lower, upper] = [0, 1].map(|side| bores.iter().map(|bore| bore[side].clone()).collect::<Vec<_>>());
+    let outlines = places.map(|at| circle(at, FLOOR_HOLE / 2.0, arcs));
+    let [lower, upper] = solid.bores(&outlines[..holes as usize], [0.0, wall]);
     solid.cap(&under, &lower, -Vector3::z());
     solid.cap(&floor, &upper, Vector3::z());
 }
@@ -169,7 +165,6 @@ fn bent_pipe(solid: &mut Solid, v: &[f64]) {
     let [outer, inner] = [diameter / 2.0, diameter / 2.0 - wall].map(&mut tube);
     outer.windows(2).for_each(|pair| solid.wall(&pair[0], &pair[1]));
     inner.windows(2).for_each(|pair| solid.wall(&pair[1], &pair[0]));
-    for (end, up) in [(0, -forward(0.0)), (steps + 2, forward(angle))] {
-        solid.cap(&outer[end], &inner[end..=end], up);
-    }
+    solid.cap(&outer[0], &inner[..1], -forward(0.0));
+    solid.cap(&outer[steps + 2], &inner[steps + 2..], forward(angle));
 }

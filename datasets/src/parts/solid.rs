@@ -92,12 +92,17 @@ impl Solid {
 
     /// A plate between two heights, with holes.
     pub(super) fn extrude(&mut self, outline: &[[f64; 2]], holes: &[Outline], z: [f64; 2]) {
-        let outer = self.prism(outline, z, false);
-        let bores: Vec<[Loop; 2]> = holes.iter().map(|hole| self.prism(hole, z, true)).collect();
-        for (side, up) in [-Vector3::z(), Vector3::z()].into_iter().enumerate() {
-            let holes: Vec<Loop> = bores.iter().map(|bore| bore[side].clone()).collect();
-            self.cap(&outer[side], &holes, up);
-        }
+        let [under, top] = self.prism(outline, z, false);
+        let [lower, upper] = self.bores(holes, z);
+        self.cap(&under, &lower, -Vector3::z());
+        self.cap(&top, &upper, Vector3::z());
+    }
+
+    /// The walls of holes between two heights: the lower and the upper loops.
+    pub(super) fn bores(&mut self, holes: &[Outline], z: [f64; 2]) -> [Vec<Loop>; 2] {
+        let prisms = holes.iter().map(|hole| <(Loop, Loop)>::from(self.prism(hole, z, true)));
+        let (lower, upper) = prisms.unzip();
+        [lower, upper]
     }
 
     /// Revolves a line of points (radius, height) about the z axis, from the lowest face to the highest.
@@ -113,10 +118,8 @@ impl Solid {
                 self.cap(&pair[1], &pair[..1], -Vector3::z());
             }
         }
-        let last = rings.len() - 1;
-        for (end, up) in [(0, -Vector3::z()), (last, Vector3::z())] {
-            self.cap(&rings[end], &[], up);
-        }
+        self.cap(&rings[0], &[], -Vector3::z());
+        self.cap(&rings[rings.len() - 1], &[], Vector3::z());
     }
 }
 
