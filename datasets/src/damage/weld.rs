@@ -33,45 +33,42 @@ fn pair(
     mesh: &TriMesh,
     edges: &EdgeGraph,
     draw: WeldPair,
-    earlier: &HashSet<usize>,
+    earlier: &HashSet<VertexId>,
     stream: &mut Stream,
-) -> Option<[usize; 2]> {
+) -> Option<[VertexId; 2]> {
     let neighbors = |v: VertexId| edges.ways(v).iter().map(|way| way.to);
-    let is_free = |v: &usize| {
-        let mut near = neighbors(VertexId::from(*v)).peekable();
-        near.peek().is_some() && !earlier.contains(v) && !near.any(|near| earlier.contains(&near.index()))
+    let is_free = |v: &VertexId| {
+        let mut near = neighbors(*v).peekable();
+        near.peek().is_some() && !earlier.contains(v) && !near.any(|near| earlier.contains(&near))
     };
-    let used: Vec<usize> = (0..mesh.n_vertices()).filter(is_free).collect();
+    let used: Vec<VertexId> = (0..mesh.n_vertices()).map(VertexId::from).filter(is_free).collect();
     if used.is_empty() {
         return None;
     }
-    let space = |a: usize, b: usize| (mesh.positions[a] - mesh.positions[b]).norm();
-    let mut best: Option<(f64, [usize; 2])> = None;
+    let space = |a: VertexId, b: VertexId| (mesh.positions[a.index()] - mesh.positions[b.index()]).norm();
+    let mut best: Option<(f64, [VertexId; 2])> = None;
     for _ in 0..if draw == WeldPair::Near { DRAWS } else { 1 } {
         let first = used[stream.below(used.len())];
-        let lengths = edges.from(VertexId::from(first));
+        let lengths = edges.from(first);
         let (_, reach) = farthest(&lengths);
-        let is_apart = |v: usize| {
-            let first = VertexId::from(first);
-            let beside = |w: VertexId| w == first || neighbors(first).any(|near| near == w);
-            let v = VertexId::from(v);
-            v != first && !neighbors(v).any(beside) && !beside(v)
+        let beside = |v: VertexId| v == first || neighbors(first).any(|near| near == v);
+        let far = |v: &VertexId| {
+            let length = lengths[v.index()];
+            let is_far = length.is_finite() && length >= FAR * reach && length > 0.0;
+            is_far && !beside(*v) && !neighbors(*v).any(beside)
         };
-        let far = |v: &usize| {
-            lengths[*v].is_finite() && lengths[*v] >= FAR * reach && lengths[*v] > 0.0 && is_apart(*v)
-        };
-        let others: Vec<usize> = used.iter().copied().filter(far).collect();
+        let others: Vec<VertexId> = used.iter().copied().filter(far).collect();
         if others.is_empty() {
             continue;
         }
         let second = match draw {
             WeldPair::Random => others[stream.below(others.len())],
             WeldPair::Near => {
-                let by_gap = |a: &usize, b: &usize| space(first, *a).total_cmp(&space(first, *b));
+                let by_gap = |a: &VertexId, b: &VertexId| space(first, *a).total_cmp(&space(first, *b));
                 others.into_iter().min_by(by_gap)?
             }
         };
-        let ratio = space(first, second) / lengths[second];
+        let ratio = space(first, second) / lengths[second.index()];
         if best.is_none_or(|(known, _)| ratio < known) {
             best = Some((ratio, [first, second]));
         }
@@ -80,17 +77,17 @@ fn pair(
 }
 
 /// Pushes the surroundings of two near points together, until the points are at their middle.
-fn push(mesh: &mut TriMesh, edges: &EdgeGraph, ends: [usize; 2]) {
-    let middle = nalgebra::center(&mesh.positions[ends[0]], &mesh.positions[ends[1]]);
-    let radius = BUMP * (mesh.positions[ends[0]] - mesh.positions[ends[1]]).norm();
-    let old = mesh.positions.clone();
-    for end in ends {
-        let shift = middle - old[end];
-        for (p, length) in mesh.positions.iter_mut().zip(edges.from(VertexId::from(end))) {
+fn push(mesh: &mut TriMesh, edges: &EdgeGraph, ends: [VertexId; 2]) {
+    let [a, b] = ends.map(|end| mesh.positions[end.index()]);
+    let middle = nalgebra::center(&a, &b);
+    let radius = BUMP * (a - b).norm();
+    for (end, old) in ends.into_iter().zip([a, b]) {
+        let shift = middle - old;
+        for (p, length) in mesh.positions.iter_mut().zip(edges.from(end)) {
             let share = (1.0 - length / radius.max(f64::MIN_POSITIVE)).max(0.0);
             *p += shift * (share * share * (3.0 - 2.0 * share));
         }
-        mesh.positions[end] = middle;
+        mesh.positions[end.index()] = middle;
     }
 }
 
@@ -101,10 +98,10 @@ pub(super) fn weld(mesh: &TriMesh, draw: WeldPair, n: u32, stream: &mut Stream) 
     for _ in 0..n {
         let edges = welded.edge_graph();
         let Some([a, b]) = pair(&welded, &edges, draw, &earlier, stream) else { break };
-        welded.positions[a] = nalgebra::center(&welded.positions[a], &welded.positions[b]);
+        let [p, q] = [a, b].map(|v| welded.positions[v.index()]);
+        welded.positions[a.index()] = nalgebra::center(&p, &q);
         earlier.insert(a);
-        let (kept, gone) = (VertexId::from(a), VertexId::from(b));
-        welded.faces.iter_mut().flatten().filter(|v| **v == gone).for_each(|v| *v = kept);
+        welded.faces.iter_mut().flatten().filter(|v| **v == b).for_each(|v| *v = a);
     }
     welded.without_unused_vertices()
 }
@@ -118,10 +115,10 @@ pub(super) fn contact(mesh: &TriMesh, n: u32, stream: &mut Stream) -> TriMesh {
         let edges = joined.edge_graph();
         let Some(ends) = pair(&joined, &edges, WeldPair::Near, &earlier, stream) else { break };
         let topology = joined.topology();
-        let [Some(a), Some(b)] = ends.map(|v| rim(&topology, VertexId::from(v))) else { continue };
+        let [Some(a), Some(b)] = ends.map(|v| rim(&topology, v)) else { continue };
         push(&mut joined, &edges, ends);
-        joined.faces.retain(|face| !face.iter().any(|v| ends.contains(&v.index())));
-        earlier.extend(a.iter().chain(&b).map(|v| v.index()));
+        joined.faces.retain(|face| !face.iter().any(|v| ends.contains(v)));
+        earlier.extend(a.iter().chain(&b));
         let strip = strip(&a, &b, &joined.positions);
         joined.faces.extend(strip);
     }
