@@ -156,14 +156,10 @@ pub(crate) struct ImplicitBody {
 }
 
 impl ImplicitBody {
-    /// The point of the described half that has the same value.
-    fn folded(&self, p: Point3<f64>) -> Point3<f64> {
-        if self.is_symmetric { Point3::new(p.x.abs(), p.y, p.z) } else { p }
-    }
-
     /// Value and gradient at `p`. The value is 1-Lipschitz.
     pub(crate) fn sample(&self, p: Point3<f64>) -> ImplicitSample {
-        let folded = self.folded(p);
+        // The point of the described half that has the same value.
+        let folded = if self.is_symmetric { Point3::new(p.x.abs(), p.y, p.z) } else { p };
         let mut sum = (f64::INFINITY, Vector3::zeros());
         for part in &self.parts {
             if part.may_change(folded, sum.0) {

@@ -105,7 +105,7 @@ impl<'a> PosedSkeleton<'a> {
         let mut motions: Vec<Vec<Motion>> = Vec::with_capacity(skeleton.chains.len());
         for (chain, turns) in skeleton.chains.iter().zip(&pose.turns) {
             let base = match chain.parent {
-                Some((parent, arc)) => interpolate(&motions[parent], arc / skeleton.chains[parent].length()),
+                Some(place) => interpolate(skeleton, &motions, place),
                 None => {
                     let [x, y, z] = pose.root;
                     let rotation = rotation(x, y, z);
@@ -126,12 +126,8 @@ impl<'a> PosedSkeleton<'a> {
         for ((chain, plain), &[length, girth]) in chains {
             let start = axis_point(chain, 0.0);
             let posed = plain[0].apply(start);
-            let moved = match chain.parent {
-                Some((parent, arc)) => {
-                    interpolate(&motions[parent], arc / self.skeleton.chains[parent].length()).apply(start)
-                }
-                None => posed,
-            };
+            let moved =
+                chain.parent.map_or(posed, |place| interpolate(self.skeleton, &motions, place).apply(start));
             let at = |(i, motion): (usize, &Motion)| {
                 let axis = axis_point(chain, chain.length() * i as f64 / N_STEPS as f64);
                 let rotation = motion.rotation * girth;
@@ -145,8 +141,8 @@ impl<'a> PosedSkeleton<'a> {
 
     /// The posed point of a chain's axis at length `arc`.
     pub(crate) fn axis_point(&self, chain: usize, arc: f64) -> Point3<f64> {
-        let bones = &self.skeleton.chains[chain];
-        interpolate(&self.motions[chain], arc / bones.length()).apply(axis_point(bones, arc))
+        let point = axis_point(&self.skeleton.chains[chain], arc);
+        interpolate(self.skeleton, &self.motions, (chain, arc)).apply(point)
     }
 
     /// The posed position of the point `p` of the body at rest.
@@ -154,7 +150,7 @@ impl<'a> PosedSkeleton<'a> {
         let mut sum = Vector3::zeros();
         let mut total = 0.0;
         for (c, member) in self.skeleton.memberships(p).enumerate() {
-            let motion = interpolate(&self.motions[c], member.arc / self.skeleton.chains[c].length());
+            let motion = interpolate(self.skeleton, &self.motions, (c, member.arc));
             sum += motion.apply(p).coords * member.weight;
             total += member.weight;
         }
@@ -162,12 +158,13 @@ impl<'a> PosedSkeleton<'a> {
     }
 }
 
-/// The motion at a fraction of a chain's length.
-fn interpolate(motions: &[Motion], fraction: f64) -> Motion {
+/// The motion of a chain at a length along it.
+fn interpolate(skeleton: &Skeleton, motions: &[Vec<Motion>], (chain, arc): (usize, f64)) -> Motion {
+    let fraction = arc / skeleton.chains[chain].length();
     let step = (fraction * N_STEPS as f64).clamp(0.0, N_STEPS as f64);
     let i = (step as usize).min(N_STEPS - 1);
     let t = step - i as f64;
-    let (a, b) = (motions[i], motions[i + 1]);
+    let (a, b) = (motions[chain][i], motions[chain][i + 1]);
     Motion { rotation: a.rotation * (1.0 - t) + b.rotation * t, shift: a.shift * (1.0 - t) + b.shift * t }
 }
 

@@ -168,14 +168,9 @@ fn measured(draft: Draft, stream: &mut Stream, budget: &Budget) -> Result<Option
 
 /// A random pose without intersecting limbs; after a few draws, the last one.
 fn typical_pose(skeleton: &Skeleton, stream: &mut Stream) -> Pose {
-    let mut pose = random_pose(skeleton, stream);
-    for _ in 1..N_DRAWS {
-        if entanglement(&PosedSkeleton::new(skeleton, &pose)) <= 0.0 {
-            break;
-        }
-        pose = random_pose(skeleton, stream);
-    }
-    pose
+    let mut draw = || random_pose(skeleton, stream);
+    let is_free = |pose: &Pose| entanglement(&PosedSkeleton::new(skeleton, pose)) <= 0.0;
+    (1..N_DRAWS).map(|_| draw()).find(is_free).unwrap_or_else(draw)
 }
 
 /// A random pose within the limits of the joints. A limb bends to one side in most places.
