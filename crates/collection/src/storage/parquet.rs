@@ -23,14 +23,6 @@ const IDS: [&str; 4] = ["id", "name", "path", "file_name"];
 const LABELS: [&str; 2] = ["label", "class"];
 const FORMATS: [&str; 2] = ["format", "extension"];
 
-/// The columns of a file, by number.
-struct Columns {
-    bytes: usize,
-    id: Option<usize>,
-    label: Option<usize>,
-    format: Option<usize>,
-}
-
 pub(super) fn open(file: File) -> Result<Archive, Fault> {
     // The library has assertions about what a file states; those that are known are checked before.
     catch_unwind(AssertUnwindSafe(|| read(file)))
@@ -43,29 +35,22 @@ fn read(file: File) -> Result<Archive, Fault> {
         return Err(Fault::Empty);
     }
     let reader = SerializedFileReader::new(file).map_err(damaged)?;
-    let columns = Columns::of(reader.metadata().file_metadata().schema_descr())?;
+    let (contents, others) = columns(reader.metadata().file_metadata().schema_descr())?;
     let mut spool = Spool::new(size, u64::MAX)?;
     let mut rows: Vec<(String, Member)> = Vec::new();
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group).map_err(damaged)?;
-        let texts = |column: Option<usize>| match column {
-            Some(column) => texts(&*group, column),
-            None => Ok(Vec::new()),
-        };
-        let [ids, labels, formats] = [texts(columns.id)?, texts(columns.label)?, texts(columns.format)?];
+        let texts = |i: usize| others[i].map_or(Ok(Vec::new()), |column| texts(&*group, column));
+        let [ids, labels, formats] = [texts(0)?, texts(1)?, texts(2)?];
         let text = |texts: &[Option<String>], row: usize| texts.get(row).cloned().flatten();
-        let mut row = 0;
-        each(&*group, columns.bytes, |value| {
-            let Some(bytes) = value else {
-                row += 1;
-                return Ok(());
-            };
+        let mut numbers = 0..;
+        each(&*group, contents, |value| {
+            let (Some(row), Some(bytes)) = (numbers.next(), value) else { return Ok(()) };
             let id = text(&ids, row).unwrap_or_else(|| format!("row{}", rows.len()));
             let name = named(id, text(&formats, row).as_deref(), rows.len())?;
             let at = spool.append(bytes)?;
             let label = text(&labels, row).unwrap_or_default();
             rows.push((name, Member { size: bytes.len() as u64, label, at }));
-            row += 1;
             Ok(())
         })?;
     }
@@ -98,41 +83,38 @@ fn named(id: String, format: Option<&str>, row: usize) -> Result<String, Fault> 
     Ok(if mesh_io::extension(id.as_ref()) == extension { id } else { format!("{id}.{extension}") })
 }
 
-impl Columns {
-    fn of(schema: &SchemaDescriptor) -> Result<Self, Fault> {
-        // The last part of the name, so that `mesh.bytes` of a struct is found too.
-        let find = |names: &[&str], is_right: &dyn Fn(Physical) -> bool| {
-            names.iter().find_map(|name| {
-                (0..schema.num_columns()).find(|&column| {
-                    let about = schema.column(column);
-                    let last = about.path().parts().last().is_some_and(|part| part == name);
-                    last && about.max_rep_level() == 0 && is_right(about.physical_type())
-                })
+/// The number of the column of bytes, and those of ids, labels and formats if there are such columns.
+fn columns(schema: &SchemaDescriptor) -> Result<(usize, [Option<usize>; 3]), Fault> {
+    // The last part of the name, so that `mesh.bytes` of a struct is found too.
+    let find = |names: &[&str], is_right: &dyn Fn(Physical) -> bool| {
+        names.iter().find_map(|name| {
+            (0..schema.num_columns()).find(|&column| {
+                let about = schema.column(column);
+                let last = about.path().parts().last().is_some_and(|part| part == name);
+                last && about.max_rep_level() == 0 && is_right(about.physical_type())
             })
-        };
-        let is_bytes = |kind| kind == Physical::BYTE_ARRAY;
-        let is_text = |kind| matches!(kind, Physical::BYTE_ARRAY | Physical::INT32 | Physical::INT64);
-        let bytes = find(&BYTES, &is_bytes).ok_or_else(|| {
-            let names: Vec<&str> = schema.columns().iter().map(|column| column.name()).collect();
-            Fault::syntax(
-                "a column `bytes` with the contents of mesh files, beside `id`, `label` and `format`",
-                names.join(", "),
-            )
-        })?;
-        let [id, label] = [&IDS[..], &LABELS].map(|names| find(names, &is_text));
-        Ok(Self { bytes, id, label, format: find(&FORMATS, &is_bytes) })
-    }
+        })
+    };
+    let is_bytes = |kind| kind == Physical::BYTE_ARRAY;
+    let is_text = |kind| matches!(kind, Physical::BYTE_ARRAY | Physical::INT32 | Physical::INT64);
+    let bytes = find(&BYTES, &is_bytes).ok_or_else(|| {
+        let names: Vec<&str> = schema.columns().iter().map(|column| column.name()).collect();
+        Fault::syntax(
+            "a column `bytes` with the contents of mesh files, beside `id`, `label` and `format`",
+            names.join(", "),
+        )
+    })?;
+    let [id, label] = [&IDS[..], &LABELS].map(|names| find(names, &is_text));
+    Ok((bytes, [id, label, find(&FORMATS, &is_bytes)]))
 }
 
 /// The values of a column as text.
 fn texts(group: &dyn RowGroupReader, column: usize) -> Result<Vec<Option<String>>, Fault> {
     let mut texts = Vec::new();
     each(group, column, |value| {
-        let text = value.map(|bytes| String::from_utf8(bytes.to_vec()));
-        texts
-            .push(text.transpose().map_err(|error| {
-                Fault::syntax("text in UTF-8", String::from_utf8_lossy(error.as_bytes()))
-            })?);
+        let fault = |bytes| Fault::syntax("text in UTF-8", String::from_utf8_lossy(bytes));
+        let text = value.map(|bytes| String::from_utf8(bytes.to_vec()).map_err(|_| fault(bytes)));
+        texts.push(text.transpose()?);
         Ok(())
     })?;
     Ok(texts)
