@@ -72,17 +72,10 @@ impl Polygons {
         limits: &ReadLimits,
     ) -> Result<MeshFile, Located> {
         let mut file = finish(TriMesh { positions, faces: self.faces }, limits)?;
-        for (count, what) in [
-            (self.n_bent, "polygons that are not flat, whose surface depends on how they are split"),
-            (
-                self.n_crossing,
-                "polygons that cross themselves, which are covered in parts twice or not at all",
-            ),
-        ] {
-            if count > 0 {
-                file.facts.notes.push(format!("{what}: {count}"));
-            }
-        }
+        let bent = "polygons that are not flat, whose surface depends on how they are split";
+        let crossing = "polygons that cross themselves, which are covered in parts twice or not at all";
+        let found = [(self.n_bent, bent), (self.n_crossing, crossing)].into_iter().filter(|(n, _)| *n > 0);
+        file.facts.notes.extend(found.map(|(n, what)| format!("{what}: {n}")));
         Ok(file)
     }
 }

@@ -178,9 +178,8 @@ impl Parser<'_> {
     }
 
     fn vertex(&mut self, element: &BytesStart<'_>) -> Result<(), Located> {
-        let position = self
-            .numbers::<f64>(element, ["x", "y", "z"], parse_number)?
-            .ok_or_else(|| self.syntax("the coordinates x, y and z as numbers", element.as_ref()))?;
+        let expected = "the coordinates x, y and z as numbers";
+        let position: [f64; 3] = self.numbers(element, ["x", "y", "z"], parse_number, expected)?;
         let position = finite(position, self.object.mesh.n_vertices()).map_err(|fault| self.locate(fault))?;
         self.object.mesh.positions.push(position);
         self.counts[0] += 1;
@@ -188,9 +187,8 @@ impl Parser<'_> {
     }
 
     fn triangle(&mut self, element: &BytesStart<'_>) -> Result<(), Located> {
-        let face = self
-            .numbers(element, ["v1", "v2", "v3"], parse_integer)?
-            .ok_or_else(|| self.syntax("the vertices v1, v2 and v3 as numbers", element.as_ref()))?;
+        let expected = "the vertices v1, v2 and v3 as numbers";
+        let face = self.numbers(element, ["v1", "v2", "v3"], parse_integer, expected)?;
         // Triangles come after all vertices of their object.
         let n = self.object.mesh.n_vertices() as u64;
         if let Some(index) = face.into_iter().find(|v| !(0..n as i64).contains(v)) {
@@ -215,16 +213,19 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// Three attributes of an element, if it has them all.
+    /// Three attributes of an element.
     fn numbers<T>(
         &self,
         element: &BytesStart<'_>,
         names: [&str; 3],
         parse: fn(&[u8]) -> Option<T>,
-    ) -> Result<Option<[T; 3]>, Located> {
+        expected: &'static str,
+    ) -> Result<[T; 3], Located> {
         let attributes = self.attributes(element)?;
-        let [a, b, c] = names.map(|name| parse(find(&attributes, name)?.trim().as_bytes()));
-        Ok(a.zip(b).zip(c).map(|((a, b), c)| [a, b, c]))
+        match names.map(|name| parse(find(&attributes, name)?.trim().as_bytes())) {
+            [Some(a), Some(b), Some(c)] => Ok([a, b, c]),
+            _ => Err(self.syntax(expected, element.as_ref())),
+        }
     }
 
     fn attributes<'a>(&self, element: &'a BytesStart<'_>) -> Result<Attributes<'a>, Located> {
