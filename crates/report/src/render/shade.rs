@@ -8,27 +8,14 @@ use super::raster::DepthBuffer;
 use crate::color::{from_linear, to_linear};
 use crate::image::RgbaImage;
 
-/// Directions towards distant lights, in camera axes.
-struct Lights {
-    key: Vector3<f32>,
-    fill: Vector3<f32>,
-    halfway: Vector3<f32>,
-}
-
-impl Lights {
-    /// A key light over the viewer's left shoulder and a weaker one from the right.
-    fn new() -> Self {
-        let key = Vector3::new(-0.48, 0.66, 0.58).normalize();
-        Self {
-            key,
-            fill: Vector3::new(0.80, 0.05, 0.60).normalize(),
-            halfway: (key + Vector3::z()).normalize(),
-        }
-    }
-
-    /// The light that a surface of linear color `base` reflects to the viewer. `open` is the share of ambient
-    /// light that reaches the point.
-    fn reflect(&self, base: Vector3<f32>, normal: Vector3<f32>, open: f32) -> Vector3<f32> {
+/// The light that a surface reflects to the viewer, by its linear color, its normal, and the share of ambient light that
+/// reaches the point.
+fn reflection() -> impl Fn(Vector3<f32>, Vector3<f32>, f32) -> Vector3<f32> {
+    // Directions in camera axes: a key light over the viewer's left shoulder and a weaker one from the right, both distant.
+    let to_key = Vector3::new(-0.48, 0.66, 0.58).normalize();
+    let to_fill = Vector3::new(0.80, 0.05, 0.60).normalize();
+    let halfway = (to_key + Vector3::z()).normalize();
+    move |base, normal, open| {
         let facing = normal.z.clamp(0.0, 1.0);
         let height = 0.5 + 0.5 * normal.y;
         let sky = Vector3::new(0.33, 0.35, 0.39);
@@ -36,11 +23,11 @@ impl Lights {
         let ambient = (ground + (sky - ground) * height) * open;
         // Light wraps around the surface a little, as from a wide studio lamp, so there is no hard terminator.
         let wrapped = |light: &Vector3<f32>| ((normal.dot(light) + 0.10) / 1.10).max(0.0);
-        let key = Vector3::new(0.80, 0.775, 0.73) * (wrapped(&self.key) * (0.35 + 0.65 * open));
-        let fill = Vector3::new(0.12, 0.135, 0.16) * (wrapped(&self.fill) * open);
+        let key = Vector3::new(0.80, 0.775, 0.73) * (wrapped(&to_key) * (0.35 + 0.65 * open));
+        let fill = Vector3::new(0.12, 0.135, 0.16) * (wrapped(&to_fill) * open);
         let edge = (1.0 - facing).powi(4);
         let rim = 0.10 * edge * height * open;
-        let gloss = 0.09 * normal.dot(&self.halfway).max(0.0).powi(20) * open;
+        let gloss = 0.09 * normal.dot(&halfway).max(0.0).powi(20) * open;
         base.component_mul(&(ambient + key + fill)) + Vector3::repeat(rim + gloss)
     }
 }
@@ -109,7 +96,7 @@ pub(super) fn shade(
     samples: u32,
     background: Background,
 ) -> RgbaImage {
-    let lights = Lights::new();
+    let reflected = reflection();
     let samples = samples as usize;
     let openness = Openness::new(buffer, samples);
     let light_at = |column: usize, row: usize| {
@@ -119,7 +106,7 @@ pub(super) fn shade(
         let corners = &normals[index as usize];
         let normal = (corners[0] * at.x + corners[1] * at.y + corners[2] * at.z).normalize();
         let base = paint.color(face.vertices, at, face.slopes.map(|s| s.cast::<f32>()));
-        Some(lights.reflect(base, normal, openness.at(column, row, normal)))
+        Some(reflected(base, normal, openness.at(column, row, normal)))
     };
     let [width, height] = buffer.size.map(|s| s / samples);
     let total = (samples * samples) as f32;
