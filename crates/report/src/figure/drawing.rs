@@ -64,7 +64,9 @@ pub(crate) trait Drawing {
     /// Width and height, in units.
     fn size(&self) -> [i32; 2];
     /// The pictures under the drawing.
-    fn pictures(&self) -> Result<Vec<Picture>, ReportError>;
+    fn pictures(&self) -> Result<Vec<Picture>, ReportError> {
+        Ok(vec![])
+    }
     /// Draws what is not a picture, and returns what it says on hover.
     fn draw<DB: DrawingBackend>(&self, area: &Area<DB>) -> Drawn<DB, Vec<Hover>>;
 }
@@ -89,11 +91,9 @@ pub(crate) fn scaled_text(size: f64, color: Rgb, px: i32) -> TextStyle<'static> 
     font.color(&rgb(color)).pos(Pos::new(HPos::Center, VPos::Center))
 }
 
-/// The style in bold, from left to right.
-pub(crate) fn bold(mut style: TextStyle<'static>) -> TextStyle<'static> {
-    let size = style.font.get_size();
-    style.font = FontDesc::new(FontFamily::Name(FONT), size, FontStyle::Bold);
-    style
+/// The style in bold.
+pub(crate) fn bold(style: TextStyle<'static>) -> TextStyle<'static> {
+    TextStyle { font: style.font.style(FontStyle::Bold), ..style }
 }
 
 /// The style with the anchor at the left or right end of the text.
@@ -211,13 +211,9 @@ pub(crate) fn svg(drawing: &impl Drawing) -> Result<String, String> {
     let mut svg = String::new();
     let area =
         SVGBackend::with_string(&mut svg, ((width * PX) as u32, (height * PX) as u32)).into_drawing_area();
-    let draw = || {
-        area.fill(&WHITE)?;
-        let hovers = drawing.draw(&area)?;
-        area.present()?;
-        Ok(hovers)
-    };
-    let hovers = draw().map_err(|e: DrawingAreaErrorKind<_>| e.to_string())?;
+    let drawn = area.fill(&WHITE).and_then(|()| drawing.draw(&area));
+    let drawn = drawn.and_then(|hovers| area.present().map(|()| hovers));
+    let hovers = drawn.map_err(|e| e.to_string())?;
     drop(area);
     // As wide as the drawing, not as its pixels; text as far below its anchor as on bitmaps.
     let size = |scale: i32| format!("<svg width=\"{}\" height=\"{}\"", width * scale, height * scale);

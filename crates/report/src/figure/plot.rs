@@ -6,11 +6,10 @@ use plotters::style::text_anchor::HPos;
 
 use super::axis::PlotAxis;
 use super::drawing::{
-    Area, Drawing, Drawn, GRID, Hover, INK, LABEL, NAME, NAME_MARGIN, PAGE_WIDTH, PALE_INK, PX, Picture,
-    TITLE, anchored, bold, drop_of, line, px, rgb, text, text_width, upwards, write,
+    Area, Drawing, Drawn, GRID, Hover, INK, LABEL, NAME, NAME_MARGIN, PAGE_WIDTH, PALE_INK, PX, TITLE,
+    anchored, bold, drop_of, line, px, rgb, text, text_width, upwards, write,
 };
 use crate::color::{Rgb, class_color, mix, value_range};
-use crate::error::ReportError;
 use crate::numbers::significant;
 use crate::record::{AxisScale, Plot, PlotPoint, Series, SeriesKind, distinct};
 
@@ -115,10 +114,6 @@ impl Drawing for Plots<'_> {
         [PAGE_WIDTH, (self.legend_height() + rows * PANEL) as i32 + 12]
     }
 
-    fn pictures(&self) -> Result<Vec<Picture>, ReportError> {
-        Ok(vec![])
-    }
-
     fn draw<DB: DrawingBackend>(&self, area: &Area<DB>) -> Drawn<DB, Vec<Hover>> {
         // A legend of plotters has one column inside the axes, where it covers data.
         let (entries, columns) = self.legend();
@@ -184,7 +179,7 @@ impl Plots<'_> {
                 EmptyElement::at((mark.x, high)) + Text::new(mark.name.clone(), (px(-8.0), px(8.0)), name);
             chart.draw_series([beside])?;
         }
-        let names = distinct(plot.series.iter().map(|series| series.name.as_str()));
+        let own = Plots::new(std::slice::from_ref(plot));
         let mut hovers = Vec::new();
         // The first series covers the others, and bands are under all of them.
         for is_band in [true, false] {
@@ -201,8 +196,8 @@ impl Plots<'_> {
                     }
                     continue;
                 }
-                let place = names.iter().position(|name| *name == series.name).unwrap_or(0);
-                let aside = if x.scale == AxisScale::Category { beside(place, names.len()) } else { 0.0 };
+                let is_beside = x.scale == AxisScale::Category;
+                let aside = if is_beside { beside(own.number(series), own.names.len()) } else { 0.0 };
                 let stroke = rgb(mix(color, [255; 3], 0.1)).stroke_width(px(STROKE) as u32);
                 let points = || points().filter(|p| is_shown(y, p.y));
                 if series.kind == SeriesKind::Curve {
