@@ -2,7 +2,7 @@
 //!
 //! A run writes its [`Record`] once; figures, tables and the page are made from it as often as needed.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 
 use base::files::{FileError, write_bytes};
@@ -283,11 +283,6 @@ impl Record {
 
 /// Distinct names in the order of their first appearance, for colors and markers.
 pub(crate) fn distinct<'a>(all: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
-    let mut names: Vec<&str> = Vec::new();
-    for name in all {
-        if !names.contains(&name) {
-            names.push(name);
-        }
-    }
-    names
+    let mut seen = HashSet::new();
+    all.filter(|name| seen.insert(*name)).collect()
 }
