@@ -7,7 +7,7 @@ use anyhow::Result;
 use canonform::embed::{EmbedOptions, StressChoice, StressOptions, embed};
 use report::numbers::significant;
 use report::record::{Figure, FigurePanels, TileRow, Tiles};
-use report::{Record, Table};
+use report::{Cell, Record, Table};
 
 use crate::collection::map;
 use crate::context::Context;
@@ -46,14 +46,8 @@ pub(crate) fn figure1(context: &Context<'_>) -> Result<Record> {
         let repair = shape.surface.input.report.summary();
         let repair = if repair.is_empty() { "nothing".to_owned() } else { repair.join("; ") };
         let [name, label] = [&shape.name, &shape.label].map(|text| text.as_str().into());
-        facts.push(vec![
-            name,
-            label,
-            mesh.n_vertices().into(),
-            mesh.n_faces().into(),
-            (*stress).into(),
-            repair.into(),
-        ]);
+        let counts = [mesh.n_vertices(), mesh.n_faces()].map(Cell::from);
+        facts.push([&[name, label][..], &counts, &[(*stress).into(), repair.into()]].concat());
     }
     let columns = rows.iter().map(|row| row.tiles.len()).max().unwrap_or(0);
     let heads = ["shape", "canonical form"].map(str::to_owned).into_iter().cycle().take(columns).collect();

@@ -14,16 +14,14 @@ use geodesics::{FastMarchingOptions, Method, ObtuseTreatment, Sampling, Update};
 use linalg::LandmarkDistances;
 use nmds::{Embedding, Regularization, SpectralBasis, nystrom, paper_stress, spectral};
 use report::numbers::significant;
-use report::record::{
-    Axis, AxisScale, Figure, FigurePanels, Mark, Plot, PlotPoint, Series, SeriesKind, TileRow, Tiles,
-};
+use report::record::{Axis, AxisScale, Figure, FigurePanels, Mark, PlotPoint, SeriesKind, TileRow, Tiles};
 use report::{Record, Table};
 use surface::VertexId;
 
 use crate::context::Context;
 use crate::specimen::{DIM, Specimen};
 use crate::surfaces::{aligned, tile};
-use crate::sweep::{MeasuredNumbers, median, note, plot, plots, point};
+use crate::sweep::{MeasuredNumbers, Panels, median, note, plots, point};
 
 /// The methods in the order of the paper.
 const METHODS: [&str; 5] = ["MDS", "NMDS", "SMDS", "Min-Var", "BFS"];
@@ -44,21 +42,27 @@ pub(crate) fn figure3(context: &Context<'_>) -> Result<Record> {
     let settings = settings();
     context.observer.begin("figure 3", settings.len() * context.specimens.len());
     let (mut measured, mut rows, mut tiles) = (MeasuredNumbers::new(), Vec::new(), Vec::new());
+    let mut panels = Panels::default();
     let x = Axis { scale: AxisScale::Category, ..Axis::linear("") };
-    let marks = METHODS.iter().enumerate().map(|(i, name)| Mark { x: i as f64, name: (*name).to_owned() });
-    let marks: Vec<Mark> = marks.collect();
-    let mut panels: Vec<Plot> = Vec::new();
+    let axes = [x, Axis::log("stress", "squared mesh units")];
     for specimen in context.specimens {
-        let y = Axis::log("stress", "squared mesh units");
-        let mut series = Vec::new();
         for (distances, method) in settings {
             let is_default = method == Method::default();
             let methods = embeddings(context, specimen, method)?;
             let key = format!("{distances} {}", specimen.shape.label);
+            let series = format!("{distances} distances");
             let ranges: Vec<PlotPoint> =
                 methods.iter().zip(0..).map(|(runs, i)| point(f64::from(i), &values(runs))).collect();
             let paper = |method: &str| context.printed(&specimen.shape.label, method);
             for (method, range) in METHODS.into_iter().zip(&ranges) {
+                let mut add = |kind, point| {
+                    panels.add(&specimen.shape.name, axes.clone(), (&series, kind), point);
+                };
+                add(SeriesKind::Filled, range.clone());
+                // The paper has one number for all kinds of distances.
+                if let Some(paper) = paper(method).filter(|_| is_default) {
+                    add(SeriesKind::Hollow, PlotPoint::new(range.x, paper, ""));
+                }
                 let PlotPoint { y, low, high, .. } = *range;
                 let numbers = [("stress", y), ("low", low), ("high", high), ("range", high / low)];
                 let off = paper(method).map(|paper| ("off paper", (y / paper - 1.0).abs()));
@@ -73,19 +77,12 @@ pub(crate) fn figure3(context: &Context<'_>) -> Result<Record> {
             if is_default {
                 tiles.push(pictured(specimen, &methods, paper)?);
             }
-            let name = format!("{distances} distances");
-            // The paper has one number for all kinds of distances.
-            let printed = METHODS.into_iter().zip(0..).filter(|_| is_default);
-            let printed =
-                printed.filter_map(|(method, i)| Some(PlotPoint::new(f64::from(i), paper(method)?, "")));
-            let printed: Vec<PlotPoint> = printed.collect();
-            series.push(Series { name: name.clone(), kind: SeriesKind::Filled, points: ranges });
-            series.push(Series { name, kind: SeriesKind::Hollow, points: printed });
             context.observer.step();
         }
-        series.retain(|series| !series.points.is_empty());
-        panels.push(Plot { marks: marks.clone(), ..plot(&specimen.shape.name, x.clone(), y, series) });
     }
+    let mark = |(i, name): (usize, &str)| Mark { x: i as f64, name: name.to_owned() };
+    let marks: Vec<Mark> = METHODS.into_iter().enumerate().map(mark).collect();
+    panels.0.iter_mut().for_each(|plot| plot.marks.clone_from(&marks));
     let heads = ["shape"].into_iter().chain(METHODS).map(str::to_owned).collect();
     let tiles = FigurePanels::Tiles(Tiles { is_paired: false, heads, rows: tiles });
     let caption = "Stress in squared mesh units over runs that differ in the first sample.";
@@ -93,7 +90,7 @@ pub(crate) fn figure3(context: &Context<'_>) -> Result<Record> {
     Ok(Record {
         figures: vec![
             Figure { part: "forms".to_owned(), caption: FORMS.to_owned(), panels: tiles },
-            Figure { caption: STRESS.to_owned(), ..plots("stress", panels) },
+            Figure { caption: STRESS.to_owned(), ..plots("stress", panels.0) },
         ],
         tables: vec![Table::new(caption, headings, rows)],
         ..context.record(&[], measured)

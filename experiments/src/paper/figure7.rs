@@ -25,10 +25,8 @@ pub(crate) fn figure7(context: &Context<'_>) -> Result<Record> {
     context.on_specimens(context.options.runs, |specimen| {
         let curves = excesses(context, specimen)?;
         let optimum = specimen.optimum(Method::default())?.stress;
-        let mut numbers = Vec::new();
-        for curve in &curves {
-            numbers.push((format!("{} last", curve.name), last(curve) / optimum));
-        }
+        let of_last = |curve: &Series| (format!("{} last", curve.name), last(curve) / optimum);
+        let mut numbers: Vec<(String, f64)> = curves.iter().map(of_last).collect();
         let others: Vec<&Series> = curves[1..].iter().collect();
         let (landmark, points) = (last(&curves[2]), &curves[2].points);
         let most = points.last().map_or(f64::NAN, |p| p.x);
