@@ -27,7 +27,7 @@ use retrieval::Scores;
 
 use crate::context::Context;
 use crate::gallery::{Gallery, GalleryQuery};
-use crate::sweep::{MeasuredNumbers, Panels, mean, median, note, plots, point, share};
+use crate::sweep::{MeasuredNumbers, Panels, mean, median, note, numbers, plots, point, share};
 
 /// The kind that begins every curve.
 const UNDAMAGED: &str = "undamaged";
@@ -167,56 +167,53 @@ pub(crate) fn robustness(context: &Context<'_>) -> Result<Record> {
             let stage = format!("{kind} {strength}");
             let found = gallery.map(n_queries, &stage, |query| undamaged.search(query, kind, damage))?;
             measured.insert("searched".to_owned(), found.len() as f64);
-            let mut scores: Vec<(&'static str, [f64; 2])> = Vec::new();
+            let mut scores: Vec<[f64; 2]> = Vec::new();
             for (i, (method, _)) in found.first().context("a query")?.scores.iter().enumerate() {
                 let of =
                     |score: fn(&Scores) -> f64| mean(found.iter().map(|found| score(&found.scores[i].1)));
-                scores.push((*method, [of(|scores| scores.nn), of(|scores| scores.map)]));
-            }
-            for (method, [nn, precision]) in &scores {
-                note(&mut measured, &format!("{stage} {method}"), [("nn", *nn), ("mAP", *precision)]);
+                let score = [of(|scores| scores.nn), of(|scores| scores.map)];
+                note(&mut measured, &format!("{stage} {method}"), ["nn", "mAP"].into_iter().zip(score));
                 match kind {
-                    UNDAMAGED => whole.push((*method, [*nn, *precision])),
-                    _ => draw(&mut panels, kind, (method, strength), [*nn, *precision]),
+                    UNDAMAGED => whole.push((*method, score)),
+                    _ => draw(&mut panels, kind, (method, strength), score),
                 }
+                scores.push(score);
             }
             if matches!(damage, Damage::Weld(..) | Damage::Contact(_)) {
                 let cut = mean(found.iter().map(|found| found.shortcuts as f64 / strength as f64));
                 measured.insert(format!("{stage} cut"), cut);
             }
             let told: Vec<bool> = found.iter().filter_map(|found| found.is_told).collect();
-            let told = (!told.is_empty()).then(|| share(&told, |is_told| *is_told));
+            // Not a number if nothing could be told: an empty cell, and never the least.
+            let told = share(&told, |is_told| *is_told);
             let [top1, unknown] =
                 [share(&found, |found| found.is_top1), share(&found, |found| found.is_unknown)];
-            let (_, [nn, precision]) = scores[0];
+            let [nn, precision] = scores[0];
             if strength <= MIDDLE && !matches!(damage, Damage::Slice(_)) {
                 (least_nn, least_top1) = (least_nn.min(nn), least_top1.min(top1));
             }
             if damage.keeps_surface() {
                 most_unknown = most_unknown.max(unknown);
             }
-            least_told = least_told.min(told.unwrap_or(1.0));
+            least_told = least_told.min(told);
             let of = |value: fn(&DamagedShape) -> f64| median(&found.iter().map(value).collect::<Vec<_>>()).1;
             let farthest =
                 found.iter().max_by(|a, b| a.combined.total_cmp(&b.combined)).context("a query")?;
-            let numbers = [nn, precision, of(|found| found.combined), farthest.combined].map(Cell::from);
+            let distances = [nn, precision, of(|found| found.combined), farthest.combined].map(Cell::from);
             let others = [top1.into(), unknown.into(), told.into(), of(|found| found.form).into()];
             let [damage, farthest] = [damage.to_string(), farthest.name.clone()].map(Cell::from);
-            rows.push([&[damage][..], &numbers, &[farthest], &others].concat());
+            rows.push([&[damage][..], &distances, &[farthest], &others].concat());
         }
     }
-    measured.extend(
-        [
-            ("least fused nn", least_nn),
-            ("least top1", least_top1),
-            ("unknown", most_unknown),
-            ("least told", least_told),
-            ("false alarms", share(&gallery.described, |shape| shape.entry.facts.shortcuts > 0)),
-            ("boundary of shapes", ShapeMetric::SAME_SHAPE.at),
-            ("boundary of classes", ShapeMetric::SAME_CLASS.at),
-        ]
-        .map(|(name, value)| (name.to_owned(), value)),
-    );
+    measured.extend(numbers([
+        ("least fused nn", least_nn),
+        ("least top1", least_top1),
+        ("unknown", most_unknown),
+        ("least told", least_told),
+        ("false alarms", share(&gallery.described, |shape| shape.entry.facts.shortcuts > 0)),
+        ("boundary of shapes", ShapeMetric::SAME_SHAPE.at),
+        ("boundary of classes", ShapeMetric::SAME_CLASS.at),
+    ]));
     Ok(Record {
         tables: vec![Table::new(DAMAGES, HEADINGS, rows)],
         figures: vec![plots("curves", panels.0)],
