@@ -44,6 +44,11 @@ pub(crate) fn share<T>(all: &[T], is: impl Fn(&T) -> bool) -> f64 {
     mean(all.iter().map(|one| f64::from(u8::from(is(one)))))
 }
 
+/// All pairs, each of a later element and an earlier one.
+pub(crate) fn pairs<T>(all: &[T]) -> impl Iterator<Item = (&T, &T)> {
+    all.iter().enumerate().flat_map(|(i, a)| all[..i].iter().map(move |b| (a, b)))
+}
+
 /// The headings of retrieval scores in tables, as in the paper.
 pub(crate) const SCORES: [&str; 6] = ["NN", "FT", "ST", "E", "DCG", "mAP"];
 

@@ -10,6 +10,7 @@ use descriptors::{Boundary, PreparedShape, Sample, ShapeMetric, ShapePair};
 use rayon::prelude::*;
 
 use super::{creature, described, held_out, print_reliability, rounded};
+use crate::sweep;
 
 /// Vertices of the meshes.
 const VERTICES: [usize; 3] = [250, 1000, 5000];
@@ -61,8 +62,7 @@ fn generated(n_plans: usize, number: usize) -> Result<Creature> {
 
 /// All pairs of one family, and some of two.
 fn pairs(creatures: &[Creature]) -> Vec<(usize, &Creature, &Creature)> {
-    let all = creatures.iter().enumerate().flat_map(|(i, a)| creatures[..i].iter().map(move |b| (a, b)));
-    let (one, two): (Vec<_>, Vec<_>) = all.partition(|(a, b)| a.family == b.family);
+    let (one, two): (Vec<_>, Vec<_>) = sweep::pairs(creatures).partition(|(a, b)| a.family == b.family);
     let one = one.into_iter().map(|(a, b)| (usize::from(a.body != b.body), a, b));
     let n = PAIRS_OF_FAMILIES.min(two.len());
     one.chain((0..n).map(|i| two[i * two.len() / n]).map(|(a, b)| (2, a, b))).collect()

@@ -17,6 +17,7 @@ use surface::VertexId;
 
 use super::{creature, held_out, print_reliability, rounded};
 use crate::parts::copies;
+use crate::sweep;
 
 /// Vertices of the bodies of a family, in turn.
 const VERTICES: [usize; 3] = [300, 1000, 3400];
@@ -159,9 +160,9 @@ fn of_bodies(family: usize, observer: &dyn Observer) -> Result<Vec<RelatedPair>>
         truth,
         said: related(a, b),
     };
-    let others = own.iter().enumerate().flat_map(|(i, a)| own[..i].iter().map(move |b| (a, b)));
     // A copy differs from another body in its triangles too.
-    let others = others.chain(own[1..].iter().flat_map(|a| copies[..6].iter().map(move |b| (a, b))));
+    let others =
+        sweep::pairs(&own).chain(own[1..].iter().flat_map(|a| copies[..6].iter().map(move |b| (a, b))));
     let others = others.map(|(a, b)| pair(Truth::Other, a, b));
     let copies = copies.iter().map(|copy| pair(Truth::Same, &own[0], copy));
     let pieces = pieces.iter().map(|piece| pair(Truth::Piece, &own[0], piece));

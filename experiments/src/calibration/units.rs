@@ -16,7 +16,7 @@ use report::{Cell, Table};
 
 use super::{boundaries, described};
 use crate::parts::parts;
-use crate::sweep::mean;
+use crate::sweep::{mean, pairs};
 
 /// Vertices of the shapes of each seed, from 1 on, since collections mix resolutions.
 const VERTICES: [usize; 5] = [3400, 1500, 8000, 2500, 5000];
@@ -48,11 +48,8 @@ pub(crate) fn units() -> Result<ExitCode> {
         };
         shapes.extend(articulated(&options)?.par_iter().map(one).collect::<Result<Vec<_>>>()?);
     }
-    let (within, between): (Vec<BodyPair<'_>>, Vec<BodyPair<'_>>) = shapes
-        .iter()
-        .enumerate()
-        .flat_map(|(i, a)| shapes[..i].iter().map(move |b| (a, b)))
-        .partition(|(a, b)| a.label == b.label);
+    let (within, between): (Vec<BodyPair<'_>>, Vec<BodyPair<'_>>) =
+        pairs(&shapes).partition(|(a, b)| a.label == b.label);
     let mut parts = Vec::new();
     for kind in SignatureKind::INTRINSIC {
         let distance = |(a, b): &BodyPair<'_>| {
@@ -124,9 +121,8 @@ fn rigid() -> Result<[f64; 2]> {
     // Names of parts begin with their family.
     let family = |label: &str| label.split('-').next().map(str::to_owned);
     let rms = |of: &dyn Fn(&str, &str) -> bool| {
-        let pairs = found.iter().enumerate().flat_map(|(i, a)| found[..i].iter().map(move |b| (a, b)));
-        let pairs = pairs.filter(|(a, b)| of(&a.0, &b.0));
-        mean(pairs.map(|(a, b)| a.1.distance(&b.1).powi(2))).sqrt()
+        let chosen = pairs(&found).filter(|(a, b)| of(&a.0, &b.0));
+        mean(chosen.map(|(a, b)| a.1.distance(&b.1).powi(2))).sqrt()
     };
     Ok([rms(&|a, b| a == b), rms(&|a, b| a != b && family(a) == family(b))])
 }
