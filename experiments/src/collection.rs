@@ -174,11 +174,8 @@ impl SurfaceCollection {
 
     /// Up to `n` shapes of each class.
     pub(crate) fn first_of_each_class(&self, n: usize) -> Vec<&LabeledSurface> {
-        let of = |class: &'_ String| {
-            let class = class.clone();
-            self.shapes.iter().filter(move |shape| shape.label == class).take(n)
-        };
-        self.classes.iter().flat_map(of).collect()
+        let (classes, all) = (self.classes.iter(), &self.shapes);
+        classes.flat_map(|class| all.iter().filter(move |shape| shape.label == *class).take(n)).collect()
     }
 }
 

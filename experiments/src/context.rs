@@ -97,13 +97,10 @@ impl Context<'_> {
             ("classes", collection.classes.len()),
             ("threads", rayon::current_num_threads()),
         ];
-        let own = config
-            .options
-            .iter()
-            .filter_map(|(name, value)| Some((name.as_str(), value.as_integer()? as f64)));
-        let own = own.chain(sizes.map(|(name, n)| (name, n as f64)));
+        let options = config.options.iter();
         let mut known = measured.clone();
-        known.extend(own.map(|(name, value)| (name.to_owned(), value)));
+        known.extend(options.filter_map(|(name, value)| Some((name.clone(), value.as_integer()? as f64))));
+        known.extend(sizes.map(|(name, n)| (name.to_owned(), n as f64)));
         known
     }
 
