@@ -59,7 +59,7 @@ struct Keywords {
 
 thread_local! {
     /// Those of the calls that this thread is in, the innermost last.
-    static CALLS: RefCell<Vec<Keywords>> = const { RefCell::new(Vec::new()) };
+    static CALLS: RefCell<Vec<Arc<Keywords>>> = const { RefCell::new(Vec::new()) };
 }
 
 /// Begins a call with these keywords: all work until [`end_call`] is under its limits.
@@ -72,14 +72,14 @@ pub(crate) fn begin_call(
 ) -> PyResult<()> {
     let limits = ShapeLimits { max_vertices: None, time: time_limit(timeout)?, memory };
     let budget = limits.budget(Budget::unlimited());
-    CALLS.with_borrow_mut(|calls| calls.push(Keywords { progress, budget, threads }));
+    CALLS.with_borrow_mut(|calls| calls.push(Arc::new(Keywords { progress, budget, threads })));
     Ok(())
 }
 
 /// Raises an exception if a limit of the call does not suffice, or it needs so many bytes more than it may use: for work in Python.
 #[pyfunction]
-pub(crate) fn check_call(py: Python<'_>, needed: usize) -> PyResult<()> {
-    let budget = Keywords::current(py).budget;
+pub(crate) fn check_call(needed: usize) -> PyResult<()> {
+    let budget = &Keywords::current().budget;
     raised(budget.check().and_then(|()| budget.check_memory(needed)))
 }
 
@@ -91,13 +91,8 @@ pub(crate) fn end_call() {
 
 impl Keywords {
     /// Those of the innermost call.
-    fn current(py: Python<'_>) -> Self {
-        CALLS.with_borrow(|calls| calls.last().map(|call| call.cloned(py))).unwrap_or_default()
-    }
-
-    fn cloned(&self, py: Python<'_>) -> Self {
-        let progress = self.progress.as_ref().map(|progress| progress.clone_ref(py));
-        Self { progress, budget: self.budget.clone(), threads: self.threads }
+    fn current() -> Arc<Self> {
+        CALLS.with_borrow(|calls| calls.last().cloned()).unwrap_or_default()
     }
 
     /// Handles signals, shows the progress of work, and looks at the clock for work whose budget does not.
@@ -114,7 +109,7 @@ impl Keywords {
 
 /// The limit on memory of the current call.
 pub(crate) fn memory_limit() -> Option<usize> {
-    CALLS.with_borrow(|calls| calls.last().and_then(|call| call.budget.memory()))
+    Keywords::current().budget.memory()
 }
 
 /// Runs `work` on the pool without the GIL, as the keywords of the call say.
@@ -122,8 +117,7 @@ pub(crate) fn run<T: Send>(
     py: Python<'_>,
     work: impl FnOnce(&dyn Observer) -> Result<T, Error> + Send,
 ) -> PyResult<T> {
-    let budget = Keywords::current(py).budget;
-    Ok(run_within(py, &budget, work)?)
+    Ok(run_within(py, &Keywords::current().budget, work)?)
 }
 
 /// [`run`] with a budget of its own, which is cancelled when that of the call is over.
@@ -132,7 +126,7 @@ pub(crate) fn run_within<T: Send>(
     budget: &Budget,
     work: impl FnOnce(&dyn Observer) -> Result<T, Error> + Send,
 ) -> Result<T, Stopped> {
-    let call = Keywords::current(py);
+    let call = Keywords::current();
     let over = |fault: Exceeded| Stopped::Interrupted(to_python(&fault.into()));
     call.budget.check().map_err(over)?;
     let pool = pool(call.threads).map_err(Stopped::Interrupted)?;
