@@ -31,13 +31,6 @@ use crate::settings::{Settings, measure};
 /// Most prepared solvers, descriptions and sides of comparisons that a surface keeps of each kind.
 const MOST_KEPT: usize = 4;
 
-/// A solver, and the budget that it was prepared with: who cancels that has to prepare another.
-#[derive(Clone)]
-struct Prepared {
-    solver: Arc<dyn DistanceSolver>,
-    budget: Budget,
-}
-
 pub(crate) type Compared = ComparedMesh<Arc<canonform::Surface>>;
 pub(crate) type Matched = MappedSurface<Arc<canonform::Surface>>;
 
@@ -51,7 +44,8 @@ pub(crate) struct Surface {
     pub(crate) content: Option<ContentHash>,
     /// Whether the repair left all vertices as they are, so that no values need to be reordered.
     unchanged: bool,
-    solvers: Cache<Method, Prepared>,
+    /// Who cancels the budget that a solver was prepared with has to prepare another.
+    solvers: Cache<Method, Arc<dyn DistanceSolver>>,
     descriptions: Cache<DescribeOptions, Arc<Shape>>,
     compared: Cache<FormOptions, Arc<Compared>>,
     matched: Cache<CorrespondOptions, Arc<Matched>>,
@@ -105,21 +99,21 @@ impl Surface {
         let limit = memory_limit();
         loop {
             let kept = self.solvers.get(&method).filter(|_| limit.is_none());
-            let budget = kept.as_ref().map_or_else(Budget::unlimited, |kept| kept.budget.clone());
+            let budget = kept.as_ref().map_or_else(Budget::unlimited, |solver| solver.budget());
             let budget = limit.map_or(budget.clone(), |bytes| budget.with_memory(bytes));
             let outcome = run_within(py, &budget, |observer| {
-                let prepared = match kept {
-                    Some(prepared) => prepared,
+                let solver = match kept {
+                    Some(solver) => solver,
                     None => {
-                        let solver = method.prepare(self.inner.intrinsic(), &budget)?.into();
-                        let prepared = Prepared { solver, budget: budget.clone() };
+                        let solver = method.prepare(self.inner.intrinsic(), &budget)?;
+                        let solver: Arc<dyn DistanceSolver> = solver.into();
                         if limit.is_none() {
-                            self.solvers.put(method, prepared.clone(), 1);
+                            self.solvers.put(method, solver.clone(), 1);
                         }
-                        prepared
+                        solver
                     }
                 };
-                work(prepared.solver.as_ref(), observer)
+                work(solver.as_ref(), observer)
             });
             match outcome {
                 // Another thread was interrupted while it used the same solver.
