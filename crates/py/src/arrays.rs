@@ -22,7 +22,7 @@ pub(crate) fn mesh_of(
     for (i, [a, b, c]) in rows(faces.as_slice()?).enumerate() {
         let (Ok(a), Ok(b), Ok(c)) = (vertex(*a), vertex(*b), vertex(*c)) else {
             let message = format!("face {i} is ({a}, {b}, {c}); vertices are numbered from 0 to 4294967294");
-            return Err(Exception::MeshError.with(&message));
+            return Err(Exception::MeshError.with(message));
         };
         checked.push([a, b, c]);
     }

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 
 use crate::arrays::{Rows, faces, positions};
-use crate::error::of_dataset;
+use crate::error::Exception;
 use crate::run::run;
 
 /// A shape: name, class, vertices, faces, and the vertices at rest, if the shapes of its family correspond there.
@@ -58,7 +58,8 @@ pub(crate) fn generate(
         poses.par_iter().map(shape).collect::<Result<Vec<_>, canonform::Error>>()
     })?;
     let arrays = |made: Result<(LabeledShape, Option<TriMesh>), DatasetError>| {
-        let (LabeledShape { name, label, mesh }, rest) = made.map_err(|fault| of_dataset(&fault))?;
+        let (LabeledShape { name, label, mesh }, rest) =
+            made.map_err(|fault| Exception::OptionError.with(fault))?;
         let rest = rest.map(|rest| positions(&rest.positions));
         Ok((name, label, positions(&mesh.positions), faces(&mesh.faces), rest))
     };

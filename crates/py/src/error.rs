@@ -1,5 +1,7 @@
 //! Library errors as Python exceptions, with remedies as keyword arguments.
 
+use std::fmt::Display;
+
 use base::Exceeded;
 use base::files::FileError;
 use canonform::collection::CollectionError;
@@ -7,10 +9,7 @@ use canonform::geodesics::GeodesicError;
 use canonform::index::IndexError;
 use canonform::mesh::MeshError;
 use canonform::{Error, Remedy};
-use datasets::DatasetError;
 use pyo3::prelude::*;
-use pyo3::sync::PyOnceLock;
-use pyo3::types::PyModule;
 
 /// The exceptions of `canonform.errors`.
 #[expect(clippy::enum_variant_names, reason = "as Python names them")]
@@ -32,16 +31,12 @@ pub(crate) enum Exception {
 
 impl Exception {
     /// The exception with this message.
-    pub(crate) fn with(self, message: &str) -> PyErr {
+    pub(crate) fn with(self, message: impl Display) -> PyErr {
+        let message = message.to_string();
         Python::attach(|py| {
-            static MODULE: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
-            let import = || Ok::<_, PyErr>(py.import("canonform.errors")?.unbind());
-            let raised = MODULE.get_or_try_init(py, import).and_then(|module| {
-                Ok(PyErr::from_value(
-                    module.bind(py).getattr(<&str>::from(self))?.call1((base::printable(message),))?,
-                ))
-            });
-            raised.unwrap_or_else(|fault| fault)
+            let class = py.import("canonform.errors").and_then(|errors| errors.getattr(<&str>::from(self)));
+            let raised = class.and_then(|class| class.call1((base::printable(&message),)));
+            raised.map_or_else(|fault| fault, PyErr::from_value)
         })
     }
 
@@ -109,14 +104,10 @@ pub(crate) fn with_remedy(message: String, remedy: Option<Remedy>) -> String {
 
 /// An error of the library as the exception that Python raises.
 pub(crate) fn to_python(fault: &Error) -> PyErr {
-    Exception::of(fault).with(&with_remedy(fault.to_string(), fault.remedy()))
+    Exception::of(fault).with(with_remedy(fault.to_string(), fault.remedy()))
 }
 
 /// A result of the library as one of Python.
 pub(crate) fn raised<T>(found: Result<T, impl Into<Error>>) -> PyResult<T> {
     found.map_err(|fault| to_python(&fault.into()))
-}
-
-pub(crate) fn of_dataset(fault: &DatasetError) -> PyErr {
-    Exception::OptionError.with(&fault.to_string())
 }

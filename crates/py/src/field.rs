@@ -74,7 +74,7 @@ impl DistanceField {
     #[staticmethod]
     fn from_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
         let read = py.detach(|| canonform::fields::DistanceField::from_bytes(bytes));
-        read.map(Self).map_err(|fault| Exception::FileError.with(&fault.to_string()))
+        read.map(Self).map_err(|fault| Exception::FileError.with(fault))
     }
 
     #[getter]
@@ -84,7 +84,7 @@ impl DistanceField {
 
     /// Facts about the field, as the JSON of `canonform field info`.
     fn facts(&self) -> String {
-        json(&self.0.facts())
+        json(self.0.facts())
     }
 
     /// Vertices of the input.

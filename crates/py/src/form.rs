@@ -39,7 +39,7 @@ impl Form {
         let coords = &self.embedded.embedding.coords;
         if coords.ncols() != 3 {
             let message = format!("a mesh has 3 dimensions, not {}; leave out n_components=", coords.ncols());
-            return Err(Exception::EmbeddingError.with(&message));
+            return Err(Exception::EmbeddingError.with(message));
         }
         Ok(self.surface.input.with_positions(|v| [0, 1, 2].map(|axis| coords[(v.index(), axis)]).into()))
     }

@@ -122,8 +122,7 @@ impl Index {
         let labels = labels_of(labels)?;
         let limits = settings.limits()?;
         let inputs = Inputs { paths: &meshes, labels: labels.as_ref(), label: label.as_deref(), limits };
-        let added = run(py, |observer| add_to_index(&path, &inputs, replace, observer))?;
-        Ok(report_of(added))
+        run(py, |observer| add_to_index(&path, &inputs, replace, observer)).map(report_of)
     }
 
     /// Removes shapes from the index at a path by name; returns how many are left.
@@ -145,8 +144,7 @@ impl Index {
         let labels = labels_of(labels)?;
         let options =
             EvaluateOptions { measure, labels: labels.as_ref(), knn_k: k, rank_by: chosen("rank", rank)? };
-        let scores = run(py, |observer| evaluate_index(&self.path, &options, observer))?;
-        Ok(json(&scores))
+        run(py, |observer| evaluate_index(&self.path, &options, observer)).map(json)
     }
 
     /// Finds the shapes nearest to a surface, a mesh file or a shape of the index; returns the report as JSON.
@@ -165,7 +163,7 @@ impl Index {
             Wanted::Text(path) => (None, path.clone()),
         };
         let search = &self.search;
-        let mut answer = run(py, |observer| {
+        let answer = run(py, |observer| {
             // As on the command line, a file goes before a shape of the same name.
             let query = match (surface, search.id_of(&path)) {
                 (Some(surface), _) => query_of(surface, search.describe_options(), name, &options, observer)?,
@@ -176,9 +174,8 @@ impl Index {
                 }
             };
             search.search(&query, &options, observer)
-        })?;
-        answer.place(|path| self.placed(path));
-        Ok(json(&answer))
+        });
+        answer.map(|answer| self.placed(answer))
     }
 
     /// Name and distance of the shapes whose signatures are nearest to a vector.
@@ -195,7 +192,7 @@ impl Index {
     /// A shape as a query for other indexes, as JSON.
     fn query_of(&self, py: Python<'_>, id: &str, rank: &str, explain: bool) -> PyResult<String> {
         let options = search_options(0, rank, explain)?;
-        Ok(json(&run(py, |observer| self.search.query_of(id, &options, observer))?))
+        run(py, |observer| self.search.query_of(id, &options, observer)).map(json)
     }
 
     /// The answer to a query of another process, among some shapes or all, and with the classes of all indexes that are searched;
@@ -212,10 +209,8 @@ impl Index {
     ) -> PyResult<String> {
         let query: Query = unpacked(query)?;
         let options = SearchOptions { classes: unpacked(classes)?, ..search_options(k, rank, explain)? };
-        let mut answer =
-            run(py, |observer| self.search.search_among(&query, ids.as_deref(), &options, observer))?;
-        answer.place(|path| self.placed(path));
-        Ok(json(&answer))
+        run(py, |observer| self.search.search_among(&query, ids.as_deref(), &options, observer))
+            .map(|answer| self.placed(answer))
     }
 
     /// How its shapes were described, as the index states it.
@@ -305,7 +300,7 @@ impl Index {
         let Some(format) = ExportFormat::named(extension) else {
             let known = ExportFormat::ALL.map(ExportFormat::extension).join(", ");
             let message = format!("`{extension}` is not a format of exports; use one of {known}");
-            return Err(Exception::OptionError.with(&message));
+            return Err(Exception::OptionError.with(message));
         };
         run(py, |_| export_index(self.search.index(), format, &path))
     }
@@ -320,14 +315,13 @@ impl Index {
         reference: Vec<PathBuf>,
     ) -> PyResult<String> {
         let keep =
-            keep.parse().map_err(|fault: String| Exception::OptionError.with(&format!("keep: {fault}")))?;
+            keep.parse().map_err(|fault: String| Exception::OptionError.with(format!("keep: {fault}")))?;
         let mut options = DuplicateOptions { min_confidence, keep, reference, ..DuplicateOptions::default() };
         if let Some(kinds) = kinds {
             let kinds = kinds.iter().map(|kind| chosen("kinds", kind));
             options.kinds = kinds.collect::<PyResult<_>>()?;
         }
-        let found = run(py, |observer| find_duplicates(&self.search, &options, observer))?;
-        Ok(json(&found))
+        run(py, |observer| find_duplicates(&self.search, &options, observer)).map(json)
     }
 }
 
@@ -336,15 +330,16 @@ impl Index {
         (id, label, mesh_path(&self.path, &path).into_os_string(), facts.vertices, facts.faces)
     }
 
-    /// The path of a mesh that this index states.
-    fn placed(&self, path: &str) -> String {
-        mesh_path(&self.path, path).to_string_lossy().into_owned()
+    /// An answer as JSON, with the paths of the meshes that this index states.
+    fn placed(&self, mut answer: Answer) -> String {
+        answer.place(|path| mesh_path(&self.path, path).to_string_lossy().into_owned());
+        json(answer)
     }
 }
 
 /// What another process wrote as JSON.
 fn unpacked<T: DeserializeOwned>(text: &str) -> PyResult<T> {
-    serde_json::from_str(text).map_err(|fault| Exception::OptionError.with(&format!("{text:.40}: {fault}")))
+    serde_json::from_str(text).map_err(|fault| Exception::OptionError.with(format!("{text:.40}: {fault}")))
 }
 
 /// The query of a surface for indexes of these options.
@@ -379,11 +374,10 @@ pub(crate) fn query_of_surface(
     rank: &str,
     explain: bool,
 ) -> PyResult<String> {
-    let unknown = || Exception::OptionError.with(&format!("options {options:?} are not of this version"));
+    let unknown = || Exception::OptionError.with(format!("options {options:?} are not of this version"));
     let describe = DescribeOptions::from_text(options).ok_or_else(unknown)?;
     let (surface, options) = (surface.get(), search_options(0, rank, explain)?);
-    let query = run(py, |observer| query_of(surface, &describe, name, &options, observer))?;
-    Ok(json(&query))
+    run(py, |observer| query_of(surface, &describe, name, &options, observer)).map(json)
 }
 
 /// The components of a query: what is said of each, and the query for it; all as JSON.
@@ -405,13 +399,13 @@ pub(crate) fn shortlist(k: usize) -> [usize; 2] {
 pub(crate) fn merge_answers(query: &str, answers: Vec<String>, classes: &str, k: usize) -> PyResult<String> {
     let (query, classes): (Query, _) = (unpacked(query)?, unpacked(classes)?);
     let answers = answers.iter().map(|answer| unpacked(answer)).collect::<PyResult<Vec<Answer>>>()?;
-    Ok(json(&canonform::search::merge_answers(&query, answers, classes, k)))
+    Ok(json(canonform::search::merge_answers(&query, answers, classes, k)))
 }
 
 /// How well the classes of these indexes and the distances of their shapes agree, as JSON.
 #[pyfunction]
 pub(crate) fn agreement(py: Python<'_>, paths: Vec<PathBuf>) -> PyResult<String> {
-    Ok(json(&run(py, |observer| Agreement::of_indexes(&paths, observer))?))
+    run(py, |observer| Agreement::of_indexes(&paths, observer)).map(json)
 }
 
 /// Scores a square matrix of distances by the classes of its rows; returns the scores as JSON. Both directions are averaged.
@@ -426,15 +420,13 @@ pub(crate) fn evaluate_matrix(
     let (distances, rank_by) = (distances.as_array(), chosen("rank", rank)?);
     let mean = |i: usize, j: usize| 0.5 * (distances[(i, j)] + distances[(j, i)]);
     let matrix = raised(DistanceMatrix::from_pairs(labels.len(), mean))?;
-    let scores = run(py, |_| Ok(evaluate(&matrix, &Labels::new(&labels), k, rank_by)?))?;
-    Ok(json(&scores))
+    run(py, |_| Ok(evaluate(&matrix, &Labels::new(&labels), k, rank_by)?)).map(json)
 }
 
 /// Merges indexes into one file; returns the report as JSON.
 #[pyfunction]
 pub(crate) fn merge_indexes(py: Python<'_>, inputs: Vec<PathBuf>, path: PathBuf) -> PyResult<String> {
-    let merged = run(py, |observer| canonform::library::merge_indexes(&inputs, &path, observer))?;
-    Ok(json(&merged))
+    run(py, |observer| canonform::library::merge_indexes(&inputs, &path, observer)).map(json)
 }
 
 /// Name, class and path of the shapes that an index of a folder has, without reading any mesh, with the sizes of their files

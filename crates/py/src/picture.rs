@@ -88,12 +88,12 @@ pub(crate) fn figure<'py>(
     let image = |(bytes, place): &(PyBackedBytes, [i64; 2])| Ok((RgbaImage::from_png(bytes)?, *place));
     let pictures = pictures.iter().map(image).collect::<Result<Vec<_>, std::io::Error>>();
     let pictures = pictures
-        .map_err(|fault| Exception::OptionError.with(&format!("pictures must be PNG files: {fault}")))?;
+        .map_err(|fault| Exception::OptionError.with(format!("pictures must be PNG files: {fault}")))?;
     png(py, run(py, |_| Ok(collage(size, background, &pictures, (&titles, type_size))))?)
 }
 
 fn png(py: Python<'_>, image: Result<RgbaImage, ReportError>) -> PyResult<Bound<'_, PyBytes>> {
-    let image = image.map_err(|fault| Exception::CanonformError.with(&fault.to_string()))?;
+    let image = image.map_err(|fault| Exception::CanonformError.with(fault))?;
     Ok(PyBytes::new(py, &image.to_png()?))
 }
 

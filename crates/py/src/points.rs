@@ -1,6 +1,6 @@
 //! Points of a surface as Python writes them.
 
-use canonform::mesh::InputPoint;
+use canonform::mesh::{InputPoint, ParsePointError};
 use canonform::surface::VertexId;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
@@ -16,9 +16,7 @@ pub(crate) fn points_of(points: &Bound<'_, PyAny>) -> PyResult<Vec<InputPoint>> 
 
 pub(crate) fn point_of(point: &Bound<'_, PyAny>) -> PyResult<InputPoint> {
     if let Ok(text) = point.extract::<&str>() {
-        return text.parse().map_err(|fault: canonform::mesh::ParsePointError| {
-            Exception::PointError.with(&fault.to_string())
-        });
+        return text.parse().map_err(|fault: ParsePointError| Exception::PointError.with(fault));
     }
     Ok(InputPoint::Vertex(vertex_of(point)?))
 }
@@ -39,11 +37,11 @@ pub(crate) fn pairs_of(pairs: &PyReadonlyArray2<'_, i64>) -> PyResult<Vec<[Verte
 
 fn not_a_point(given: &Bound<'_, PyAny>) -> PyErr {
     let message = "is not a point; give the number of a vertex, or text such as \"17-42@0.3\"";
-    Exception::PointError.with(&format!("{given} {message}"))
+    Exception::PointError.with(format!("{given} {message}"))
 }
 
 pub(crate) fn vertex(number: i64) -> PyResult<VertexId> {
     u32::try_from(number).map(VertexId).map_err(|_| {
-        Exception::PointError.with(&format!("{number} is not a vertex; vertices are counted from 0"))
+        Exception::PointError.with(format!("{number} is not a vertex; vertices are counted from 0"))
     })
 }

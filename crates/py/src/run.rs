@@ -205,7 +205,7 @@ fn pool(n_threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
 #[pyfunction]
 pub(crate) fn set_threads(py: Python<'_>, n: i64) -> PyResult<()> {
     let message = || format!("n={n} is not possible: give a number of threads, or 0 for all cores");
-    let n = usize::try_from(n).map_err(|_| Exception::OptionError.with(&message()))?;
+    let n = usize::try_from(n).map_err(|_| Exception::OptionError.with(message()))?;
     py.import("os")?.getattr("environ")?.set_item(OF_PARENT, n.to_string())?;
     let others = {
         let mut pools = pools();

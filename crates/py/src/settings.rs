@@ -88,10 +88,9 @@ impl<'py> FromPyObject<'_, 'py> for Settings {
             Self::deserialize(alone).map_err(|fault| refused(&name, &given, &in_words(&fault)))?;
             values.insert(name, given);
         }
-        let settings =
-            Self::deserialize(values).map_err(|fault| Exception::OptionError.with(&fault.to_string()))?;
+        let settings = Self::deserialize(values).map_err(|fault| Exception::OptionError.with(fault))?;
         match settings.unknown.keys().next() {
-            Some(name) => Err(Exception::OptionError.with(&format!("there is no option {name}"))),
+            Some(name) => Err(Exception::OptionError.with(format!("there is no option {name}"))),
             None => Ok(settings),
         }
     }
@@ -122,7 +121,7 @@ fn in_words(fault: &impl Display) -> String {
 }
 
 fn refused(name: &str, value: impl Display, what: &str) -> PyErr {
-    Exception::OptionError.with(&format!("{name}={value} is not possible: {what}"))
+    Exception::OptionError.with(format!("{name}={value} is not possible: {what}"))
 }
 
 impl Settings {
@@ -140,7 +139,7 @@ impl Settings {
     pub(crate) fn form(&self, repair: RepairOptions) -> PyResult<FormOptions> {
         let checked = self.form.options(&self.method, &self.marching, &self.repair);
         let options =
-            checked.map_err(|fault: NoEffect| Exception::OptionError.with(&fault.in_words(spelled)))?;
+            checked.map_err(|fault: NoEffect| Exception::OptionError.with(fault.in_words(spelled)))?;
         Ok(FormOptions { repair, seed: self.seed.unwrap_or_default(), ..options })
     }
 

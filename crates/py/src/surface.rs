@@ -237,7 +237,7 @@ impl Surface {
     /// the file that they are from.
     fn state(&self) -> State {
         let (vertices, faces) = (positions(&self.mesh.positions), faces(&self.mesh.faces));
-        (vertices, faces, json(&self.inner.input.repair), self.content.map(|hash| hash.to_string()))
+        (vertices, faces, json(self.inner.input.repair), self.content.map(|hash| hash.to_string()))
     }
 
     /// The surface of which [`state`](Self::state) is the state.
@@ -249,12 +249,9 @@ impl Surface {
         repair: &str,
         content: Option<&str>,
     ) -> PyResult<Self> {
-        let options: RepairOptions =
-            serde_json::from_str(repair).map_err(|fault| Exception::OptionError.with(&fault.to_string()))?;
-        let content: Option<ContentHash> = content
-            .map(str::parse)
-            .transpose()
-            .map_err(|fault: String| Exception::CanonformError.with(&fault))?;
+        let options = serde_json::from_str(repair).map_err(|fault| Exception::OptionError.with(fault))?;
+        let content = content.map(str::parse).transpose();
+        let content = content.map_err(|fault: String| Exception::CanonformError.with(fault))?;
         let mesh = mesh_of(&vertices, &faces)?;
         Self::repaired(py, &options, || Ok((mesh, content)))
     }
