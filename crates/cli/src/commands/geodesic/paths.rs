@@ -7,7 +7,7 @@ use std::time::Instant;
 use anyhow::Result;
 use base::files::write_atomically;
 use base::object;
-use canonform::geodesics::{DistanceSolver, Exact, PathTracer, SurfacePath};
+use canonform::geodesics::{DistanceSolver, Exact, PathPoint, PathTracer, SurfacePath};
 use canonform::mesh::InputPoint;
 use canonform::settings::Geodesic;
 use serde::Serialize;
@@ -45,9 +45,10 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
             let path = SurfacePath::trace(surface, &tracer, &row.from, *target).map_err(fault)?;
             let (source, n_points) = (path.points[0].at, path.points.len());
             let distance = match target {
-                InputPoint::Vertex(v) => Some(
-                    row.distances[surface.repaired_vertex(*v).map_err(|point| fault(point.into()))?.index()],
-                ),
+                InputPoint::Vertex(v) => {
+                    let vertex = surface.repaired_vertex(*v).map_err(|point| fault(point.into()))?;
+                    Some(row.distances[vertex.index()])
+                }
                 _ => None,
             };
             facts.push(object! { source, target: *target, length: path.length, distance, n_points });
@@ -106,34 +107,28 @@ fn write_paths(output: &Output, paths: &[SurfacePath], facts: &[impl Serialize])
     match output.format.as_str() {
         "csv" => write_atomically(&output.path, |out| {
             writeln!(out, "path,x,y,z,distance,at")?;
-            for (i, point) in
-                paths.iter().enumerate().flat_map(|(i, path)| path.points.iter().map(move |p| (i, p)))
-            {
-                let [x, y, z] = point.position.into();
-                writeln!(out, "{i},{x},{y},{z},{},{}", point.distance, point.at)?;
+            for (i, path) in paths.iter().enumerate() {
+                for PathPoint { at, position: p, distance } in &path.points {
+                    writeln!(out, "{i},{},{},{},{distance},{at}", p.x, p.y, p.z)?;
+                }
             }
             Ok(())
         })?,
         "json" => {
-            let points = |path: &SurfacePath| {
-                let points = path.points.iter();
-                let position = |p: &canonform::geodesics::PathPoint| <[f64; 3]>::from(p.position);
-                points
-                    .map(|p| object! { at: p.at, position: position(p), distance: p.distance })
-                    .collect::<Vec<_>>()
-            };
-            let paths = facts.iter().zip(paths);
-            let paths: Vec<_> = paths
-                .map(|(facts, path)| {
-                    object! {
-                        #[serde(flatten)]
-                        facts,
-                        points: points(path),
-                    }
-                })
-                .collect();
+            let paths = facts.iter().zip(paths).map(|(facts, path)| {
+                let points = path.points.iter().map(|point| {
+                    let position = <[f64; 3]>::from(point.position);
+                    object! { at: point.at, position, distance: point.distance }
+                });
+                object! {
+                    #[serde(flatten)]
+                    facts,
+                    points: points.collect::<Vec<_>>(),
+                }
+            });
+            let json = object! { paths: paths.collect::<Vec<_>>() };
             write_atomically(&output.path, |out| {
-                serde_json::to_writer(&mut *out, &object! { paths })?;
+                serde_json::to_writer(&mut *out, &json)?;
                 writeln!(out)
             })?;
         }

@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use super::files::MappedFile;
 use crate::args::VALUE_FORMATS;
-use crate::output::check_format;
+use crate::output::{check_format, word};
 use crate::table::{Numbers, Table, write_csv, write_matrix, write_npy};
 
 /// The elements of a mesh that have rows.
@@ -113,51 +113,41 @@ impl Transfer {
     ) -> Result<(impl Serialize + use<>, String)> {
         let mapping = Mapping::new(map, sides.map(|side| &side.mapped));
         let elements = self.elements;
-        let found = match (elements, &self.content) {
-            (Elements::Vertices, Content::Values(values)) => {
-                Content::Values(mapping.vertices(Side::Second).values(values))
+        let found = match &self.content {
+            Content::Labels(labels) => {
+                let found = match elements {
+                    Elements::Vertices => mapping.vertices(Side::Second).vertex_labels(labels),
+                    // Corners have no labels.
+                    _ => mapping.faces(Side::Second).face_labels(labels),
+                };
+                Content::Labels(found.into_iter().map(Option::flatten).collect())
             }
-            (Elements::Vertices, Content::Labels(labels)) => {
-                Content::Labels(flat(mapping.vertices(Side::Second).vertex_labels(labels)))
-            }
-            // Corners have no labels.
-            (_, Content::Labels(labels)) => {
-                Content::Labels(flat(mapping.faces(Side::Second).face_labels(labels)))
-            }
-            (Elements::Corners, Content::Values(values)) => {
-                let Some(corners) = mapping.corners(Side::Second, values) else {
-                    bail!(
+            Content::Values(values) => Content::Values(match elements {
+                Elements::Vertices => mapping.vertices(Side::Second).values(values),
+                Elements::Faces => {
+                    let rows: Vec<usize> = (0..values.nrows()).collect();
+                    let rows = mapping.faces(Side::Second).face_labels(&rows);
+                    let value = |i: usize, j: usize| rows[i].map_or(f64::NAN, |row| values[(row, j)]);
+                    Matrix::from_fn(rows.len(), values.ncols(), value)
+                }
+                Elements::Corners => match mapping.corners(Side::Second, values) {
+                    Some(corners) => corners.corner_values(values),
+                    None => bail!(
                         "{}: values of corners are not carried between a part and a whole; give them by vertex",
                         path.display()
-                    )
-                };
-                Content::Values(corners.corner_values(values))
-            }
-            (Elements::Faces, Content::Values(values)) => {
-                let rows: Vec<usize> = (0..values.nrows()).collect();
-                let rows = mapping.faces(Side::Second).face_labels(&rows);
-                Content::Values(Matrix::from_fn(rows.len(), values.ncols(), |i, j| {
-                    rows[i].map_or(f64::NAN, |row| values[(row, j)])
-                }))
-            }
+                    ),
+                },
+            }),
         };
         found.write(path)?;
         let (kind, rows, columns) = match &found {
             Content::Values(values) => ("values", values.nrows(), values.ncols()),
             Content::Labels(labels) => ("labels", labels.len(), 1),
         };
-        let of = match elements {
-            Elements::Vertices => "vertices",
-            Elements::Faces => "faces",
-            Elements::Corners => "corners of faces",
-        };
+        let of = if elements == Elements::Corners { "corners of faces" } else { &word(elements) };
         let words = format!("{kind} of {rows} {of}, in {}", path.display());
         Ok((object! { path: path.to_owned(), elements, kind, rows, columns }, words))
     }
-}
-
-fn flat(labels: Vec<Option<Option<String>>>) -> Vec<Option<String>> {
-    labels.into_iter().map(Option::flatten).collect()
 }
 
 impl Content {
