@@ -8,7 +8,7 @@ use canonform::collection::content_hash;
 use canonform::compare::{ComparedMesh, FaceAgreement, MeshComparison, Residual, compare_meshes};
 use canonform::descriptors::ShapeMetric;
 use canonform::mesh::io::{Content, writable};
-use canonform::relations::{RelationKind, in_four_digits};
+use canonform::relations::in_four_digits;
 use canonform::rigid::Handedness;
 
 use crate::args::{Common, CompareArgs, PairArgs};
@@ -46,8 +46,7 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     let failed =
         args.threshold.map(|limit| found.comparison.normalized_distance > limit || distance.is_different());
     let kind = found.relation.kind;
-    let is_alike = |kinds: &[RelationKind]| kind.is_one_surface() || kinds.contains(&kind);
-    let not_alike = args.exit_code.is_some_and(|kinds| !is_alike(kinds));
+    let not_alike = args.exit_code.is_some_and(|kinds| !kind.is_one_surface() && !kinds.contains(&kind));
     let (residual, form) = (found.overlay.residual()[0], &found.comparison);
     let max_vertex = a.surface().input_vertex(residual.max_point.into()).0;
     let relation = &found.relation;

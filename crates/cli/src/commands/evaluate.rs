@@ -90,10 +90,9 @@ fn text(found: &IndexEvaluation, common: &Common) -> String {
         text += &facts(&column(graph, scores.knn_k));
     }
     if common.details {
-        text += &format!("\n{}", confusion("true \\ predicted", &scores.classes, &scores.plain.confusion));
-        if let Some(graph) = &scores.graph {
-            let title = "true \\ predicted (graph)";
-            text += &format!("\n{}", confusion(title, &scores.classes, &graph.confusion));
+        let graph = scores.graph.iter().map(|graph| ("true \\ predicted (graph)", graph));
+        for (title, ranking) in [("true \\ predicted", &scores.plain)].into_iter().chain(graph) {
+            text += &format!("\n{}", confusion(title, &scores.classes, &ranking.confusion));
         }
     }
     text

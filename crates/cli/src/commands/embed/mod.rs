@@ -7,7 +7,7 @@ pub(super) use self::words::estimated;
 use std::path::Path;
 use std::process::ExitCode;
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use base::object;
 use base::terminal::Bars;
 use canonform::collection::ShapeFile;
@@ -131,11 +131,8 @@ fn output_format(args: &EmbedArgs, common: &Common) -> Result<&'static str> {
         return Ok(args.output_format.unwrap_or("ply"));
     };
     let known = FORM_FORMATS.map(|(extension, _)| extension);
-    match (args.output_format, known.into_iter().find(|extension| *extension == stated)) {
-        (Some(given), _) => Ok(given),
-        (None, Some(stated)) => Ok(stated),
-        (None, None) => bail!("forms cannot be written as {stated}; use {}", or_list(known)),
-    }
+    let given = args.output_format.or_else(|| known.into_iter().find(|extension| *extension == stated));
+    given.with_context(|| format!("forms cannot be written as {stated}; use {}", or_list(known)))
 }
 
 /// Embeds meshes in parallel. Failures are listed at the end and do not stop the rest.

@@ -126,10 +126,7 @@ fn unused_labels(path: &Path, built: &BuildReport) -> String {
     let named =
         lines.iter().take(MOST_LINES).map(|unused| format!("line {}, `{}`", unused.line, unused.name));
     let more = if lines.len() > MOST_LINES { "; ..." } else { "" };
-    let (n, names) = match lines.len() {
-        1 => ("1 line".to_owned(), "names"),
-        n => (format!("{n} lines"), "name"),
-    };
+    let (n, names) = (count(lines.len(), "line"), if lines.len() == 1 { "names" } else { "name" });
     let named = named.collect::<Vec<_>>().join("; ");
     format!("warning: {n} of {} {names} no shape: {named}{more}", path.display())
 }
@@ -138,16 +135,12 @@ fn unused_labels(path: &Path, built: &BuildReport) -> String {
 fn classes(report: &BuildReport) -> Option<String> {
     let from = match report.labels_from? {
         LabelOrigin::None => return Some("none".to_owned()),
-        LabelOrigin::Folders => "sub-folders",
-        LabelOrigin::Names => "leading letters of file names",
+        LabelOrigin::Folders => "sub-folders; pass --labels none to have none",
+        LabelOrigin::Names => "leading letters of file names; pass --labels none to have none",
         LabelOrigin::File => "the label file",
         LabelOrigin::Dataset => "the dataset",
     };
-    let remedy = match report.labels_from {
-        Some(LabelOrigin::Folders | LabelOrigin::Names) => "; pass --labels none to have none",
-        _ => "",
-    };
-    Some(format!("{} from {from}{remedy}", report.n_classes))
+    Some(format!("{} from {from}", report.n_classes))
 }
 
 fn answer(index: &Path, report: &BuildReport, max_dropped: f64) -> Answer {
