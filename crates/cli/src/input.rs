@@ -9,7 +9,8 @@ use anyhow::{Context, Result, bail};
 use base::terminal::Bars;
 use canonform::collection::{Dataset, ShapeFile, Storage, is_dataset, mesh_at, read_mesh_file};
 use canonform::mesh::io::{
-    FORMATS, FileSource, Format, MeshFile, ReadLimits, files_in, is_mesh_path, or_list, without_extension,
+    FORMATS, FileSource, Format, MeshFile, ReadLimits, files_in, is_mesh_path, mesh_files, or_list,
+    without_extension,
 };
 use canonform::mesh::{RepairReport, TriMesh};
 use canonform::{Remedy, Surface, side_by_side};
@@ -156,10 +157,7 @@ pub(crate) fn expand(arguments: &[PathBuf]) -> Result<Vec<ShapeFile>> {
                     .with_context(|| format!("cannot look for {pattern}"))?;
                 let found: Vec<PathBuf> = found.into_iter().filter(|path| is_mesh_path(path)).collect();
                 if found.is_empty() {
-                    bail!(
-                        "{pattern}: no mesh matches this pattern; a mesh is {}",
-                        canonform::mesh::io::mesh_files()
-                    );
+                    bail!("{pattern}: no mesh matches this pattern; a mesh is {}", mesh_files());
                 }
                 shapes.extend(found.into_iter().map(single));
             }

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use anyhow::{Result, bail};
 use base::object;
 use canonform::mesh::RepairReport;
-use canonform::mesh::io::{Content, FileFacts, Format, MeshFile, or_list, writable};
+use canonform::mesh::io::{Content, FileFacts, Format, LengthUnit, MeshFile, extension, or_list, writable};
 use serde::Serialize;
 
 use crate::args::{Common, ConvertArgs};
@@ -78,9 +78,8 @@ fn notes(json: &Json, args: &ConvertArgs) {
         base::terminal::note(&format!("{name}: ignored {what}"));
     }
     json.file.notes.iter().for_each(|note| base::terminal::note(&format!("{name}: {note}")));
-    let is_3mf =
-        canonform::mesh::io::extension(&json.output) == "3mf" || args.output_format.as_deref() == Some("3mf");
-    let kept = is_3mf && json.file.unit == Some(canonform::mesh::io::LengthUnit::Millimeter);
+    let is_3mf = extension(&json.output) == "3mf" || args.output_format.as_deref() == Some("3mf");
+    let kept = is_3mf && json.file.unit == Some(LengthUnit::Millimeter);
     if let Some(unit) = json.file.unit.filter(|_| !kept) {
         let says = if is_3mf { "states millimeter" } else { "does not state it" };
         base::terminal::note(&format!(

@@ -117,10 +117,7 @@ fn query(args: &FieldQueryArgs, common: &Common) -> Result<ExitCode> {
     report(common, &json, |json| {
         let mut lines = Vec::new();
         if !json.pairs.is_empty() {
-            lines.push(format!(
-                "{:>8} {:>8} {:>12} {:>12} {:>12}  kind",
-                "a", "b", "distance", "lower", "upper"
-            ));
+            lines.push("       a        b     distance        lower        upper  kind".to_owned());
         }
         for pair in &json.pairs {
             let PairDistance { a, b, distance, lower, upper, kind } = pair;

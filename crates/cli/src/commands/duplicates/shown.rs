@@ -103,12 +103,10 @@ pub(super) fn moved(moves: &MoveReport) -> String {
     let MoveReport { moved, not_moved, journal } = moves;
     let mut lines = vec![format!("{} moved", count(moved.len(), "file"))];
     lines.extend(moved.iter().map(|[from, to]| format!("  {} is now {}", shown(from), shown(to))));
-    let why = |why: &str| one_line(why).into_owned();
-    lines.extend(
-        not_moved.iter().map(|stays| {
-            format!("  {}: not moved, since {}", shown(&stays.path), why(&stays.why.to_string()))
-        }),
-    );
+    for stays in not_moved {
+        let why = stays.why.to_string();
+        lines.push(format!("  {}: not moved, since {}", shown(&stays.path), one_line(&why)));
+    }
     if let Some(journal) = journal {
         lines.push(format!("canonform duplicates --undo {} puts them back", shown(journal)));
     }
