@@ -14,7 +14,6 @@ use super::answer::{Params, json};
 use super::shapes::is_missing;
 use crate::app::App;
 use crate::collection::Collection;
-use crate::cost;
 use crate::error::ApiError;
 use crate::measured::{Measured, in_space, overlaid};
 
@@ -23,32 +22,14 @@ use crate::measured::{Measured, in_space, overlaid};
 #[serde(deny_unknown_fields)]
 pub(super) struct CompareParams {
     /// The `query_id` of an upload.
-    pub(super) query: Option<String>,
+    query: Option<String>,
     /// A shape of the index.
-    pub(super) a: Option<String>,
+    a: Option<String>,
     /// A shape of the index.
-    pub(super) b: String,
+    b: String,
 }
 
 impl CompareParams {
-    /// Answers in a job, which costs `each` for every vertex once both meshes are measured.
-    pub(super) async fn answered<T: Serialize + 'static>(
-        self,
-        app: &Arc<App>,
-        each: f64,
-        answer: fn(&App, &Collection, Self, &Budget) -> Result<T, ApiError>,
-    ) -> Result<Response, ApiError> {
-        let (shared, collection) = (app.clone(), app.served.collection());
-        let ids = self.a.iter().chain([&self.b]);
-        let measuring: f64 = ids.clone().map(|id| app.cost(&collection, id)).sum();
-        let uploaded = self.query.as_ref().and_then(|query| app.kept(&collection, query));
-        let uploaded = uploaded.map_or(0, |query| query.n_vertices());
-        let vertices = uploaded + ids.map(|id| collection.n_vertices(id)).sum::<u64>();
-        let cost = measuring + vertices as f64 * each;
-        let job = move |budget: &Budget| json(&answer(&shared, &collection, self, budget)?);
-        app.work.run(cost, None, job).await
-    }
-
     /// Both shapes.
     pub(super) fn sides(
         self,
@@ -101,14 +82,25 @@ impl ComparedShape {
     }
 }
 
-pub(super) async fn compare(
+/// Answers about two shapes in a job, which costs `each` for every vertex once both meshes are measured.
+pub(super) async fn answered<T: Serialize + 'static>(
     State(app): State<Arc<App>>,
     Params(params): Params<CompareParams>,
+    each: f64,
+    answer: fn(&App, &Collection, CompareParams, &Budget) -> Result<T, ApiError>,
 ) -> Result<Response, ApiError> {
-    params.answered(&app, cost::COMPARED_VERTEX, answer).await
+    let (shared, collection) = (app.clone(), app.served.collection());
+    let ids = params.a.iter().chain([&params.b]);
+    let measuring: f64 = ids.clone().map(|id| app.cost(&collection, id)).sum();
+    let uploaded = params.query.as_ref().and_then(|query| app.kept(&collection, query));
+    let uploaded = uploaded.map_or(0, |query| query.n_vertices());
+    let vertices = uploaded + ids.map(|id| collection.n_vertices(id)).sum::<u64>();
+    let cost = measuring + vertices as f64 * each;
+    let job = move |budget: &Budget| json(&answer(&shared, &collection, params, budget)?);
+    app.work.run(cost, None, job).await
 }
 
-fn answer(
+pub(super) fn compare(
     app: &App,
     collection: &Collection,
     params: CompareParams,

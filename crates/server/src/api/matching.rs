@@ -1,29 +1,16 @@
 //! Corresponding points of two shapes.
 
-use std::sync::Arc;
-
-use axum::extract::State;
-use axum::response::Response;
 use base::object;
 use canonform::Budget;
 use canonform::maps::{CorrespondOptions, MappedSurface, correspond};
 use serde::Serialize;
 
-use super::answer::Params;
 use super::compare::{CompareParams, ComparedShape};
 use crate::app::App;
 use crate::collection::Collection;
-use crate::cost;
 use crate::error::ApiError;
 
-pub(super) async fn matching(
-    State(app): State<Arc<App>>,
-    Params(params): Params<CompareParams>,
-) -> Result<Response, ApiError> {
-    params.answered(&app, cost::MATCHED_VERTEX, answer).await
-}
-
-fn answer(
+pub(super) fn matching(
     app: &App,
     collection: &Collection,
     params: CompareParams,

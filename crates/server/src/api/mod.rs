@@ -17,7 +17,9 @@ use axum::routing::get;
 use base::object;
 
 use self::answer::json;
+use self::compare::answered;
 use crate::app::App;
+use crate::cost;
 use crate::error::ApiError;
 use crate::formats::filled_in;
 
@@ -28,6 +30,8 @@ static OPENAPI: LazyLock<String> = LazyLock::new(|| filled_in(include_str!("../.
 
 /// The routes, as the description lists them.
 pub(crate) fn router() -> Router<Arc<App>> {
+    let compare = |app, params| answered(app, params, cost::COMPARED_VERTEX, compare::compare);
+    let matching = |app, params| answered(app, params, cost::MATCHED_VERTEX, matching::matching);
     Router::new()
         .route("/api/search", get(search::search_again).post(search::search))
         .route("/api/shapes", get(shapes::list))
@@ -35,8 +39,8 @@ pub(crate) fn router() -> Router<Arc<App>> {
         .route("/api/shapes/{id}/form", get(shapes::form))
         .route("/api/shapes/{id}/file", get(shapes::file))
         .route("/api/shapes/{id}/thumbnail", get(shapes::thumbnail))
-        .route("/api/compare", get(compare::compare))
-        .route("/api/match", get(matching::matching))
+        .route("/api/compare", get(compare))
+        .route("/api/match", get(matching))
         .route("/api/duplicates", get(duplicates))
         .route("/api/openapi.json", get(openapi))
         .route("/healthz", get(health))
