@@ -94,16 +94,11 @@ pub(crate) fn in_space(overlay: &MeshOverlay) -> [Geometry; 2] {
 /// One form of an overlay: with the faces of its mesh, or as dots if the mesh is missing.
 pub(crate) fn overlaid(overlay: &Overlay, place: usize, measured: Option<&Measured>, dot: f64) -> Geometry {
     let (points, residuals) = (&overlay.points[place], &overlay.residuals[place]);
-    match measured {
-        Some(measured) => {
-            let faces = measured.surface.mesh().faces.clone();
-            Geometry::in_place(&TriMesh { positions: points.clone(), faces }).with_values(RESIDUAL, residuals)
-        }
-        None => {
-            let mesh = report::render::dots(points, DOT * dot);
-            let each = mesh.n_vertices() / points.len().max(1);
-            let values: Vec<f64> = residuals.iter().flat_map(|r| std::iter::repeat_n(*r, each)).collect();
-            Geometry::in_place(&mesh).with_values(RESIDUAL, &values)
-        }
-    }
+    let mesh = match measured.map(|measured| measured.surface.mesh().faces.clone()) {
+        Some(faces) => TriMesh { positions: points.clone(), faces },
+        None => report::render::dots(points, DOT * dot),
+    };
+    let each = mesh.n_vertices() / points.len().max(1);
+    let values: Vec<f64> = residuals.iter().flat_map(|r| std::iter::repeat_n(*r, each)).collect();
+    Geometry::in_place(&mesh).with_values(RESIDUAL, &values)
 }

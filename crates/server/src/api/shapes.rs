@@ -58,15 +58,12 @@ pub(super) async fn list(
         params.label.as_ref().is_none_or(|label| *label == shape.label)
             && (shape.id.to_lowercase().contains(&part) || shape.label.to_lowercase().contains(&part))
     };
-    let (mut total, mut shapes) = (0, Vec::new());
-    for shape in collection.shapes.iter().filter(is_meant) {
-        if total >= params.offset && shapes.len() < limit {
-            let Facts { vertices, faces, area, diameter, .. } = shape.facts;
-            shapes.push(object! { id: &shape.id, label: &shape.label, vertices, faces, area, diameter });
-        }
-        total += 1;
-    }
-    json(&object! { total, offset: params.offset, shapes })
+    let found: Vec<&Entry> = collection.shapes.iter().filter(is_meant).collect();
+    let shapes = found.iter().skip(params.offset).take(limit).map(|shape| {
+        let Facts { vertices, faces, area, diameter, .. } = shape.facts;
+        object! { id: &shape.id, label: &shape.label, vertices, faces, area, diameter }
+    });
+    json(&object! { total: found.len(), offset: params.offset, shapes: shapes.collect::<Vec<_>>() })
 }
 
 /// The repaired mesh of a shape.
