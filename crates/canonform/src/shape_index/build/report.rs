@@ -89,9 +89,9 @@ pub struct BuildReport {
     pub removed: usize,
     /// Shapes kept although their files cannot be read now: the file, its folder, or a link to it.
     pub unreadable: Vec<String>,
-    /// Shapes kept although they did not come from the folder; [`prune`](BuildOptions::prune) removes them.
+    /// Shapes kept although they did not come from the folder; [`prune`](super::BuildOptions::prune) removes them.
     pub elsewhere: usize,
-    /// Shapes removed by [`prune`](BuildOptions::prune).
+    /// Shapes removed by [`prune`](super::BuildOptions::prune).
     pub pruned: usize,
     /// Shapes of this run without a class.
     pub unlabelled: usize,
