@@ -1,13 +1,15 @@
-//! What becomes of shapes whose files are gone.
+//! What becomes of shapes whose files are gone, and whether an index is current.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 use collection::{SkipKind, Skipped};
-use index::Entry;
+use index::{Entry, Index, IndexError};
 
 use super::report::BuildReport;
 use crate::shape_index::place::Root;
+use crate::shape_index::record::same_source;
+use crate::shape_index::source::Hashed;
 
 /// Decides what becomes of shapes of an index whose files were not found.
 pub(super) struct Missing<'a> {
@@ -41,5 +43,38 @@ impl<'a> Missing<'a> {
         };
         *count += 1;
         stays
+    }
+}
+
+impl BuildReport {
+    /// Completes the report if an index holds just these files, and nothing that has to be removed. Returns whether it does.
+    pub(super) fn is_current(
+        &mut self,
+        index: &Index,
+        files: &[Hashed],
+        missing: &Missing<'_>,
+    ) -> Result<bool, IndexError> {
+        let entries = index.entries()?.into_iter().map(|entry| (entry.id.clone(), entry));
+        let mut others: HashMap<String, Entry> = entries.collect();
+        let mut found = Self::default();
+        for (listed, hash) in files {
+            match (others.remove(&listed.file.name), hash) {
+                (Some(entry), Ok(hash)) if entry.content == *hash && same_source(&entry, listed) => {
+                    found.note_dropped(&index.path, &entry);
+                }
+                _ => return Ok(false),
+            }
+        }
+        for entry in others.into_values() {
+            if !missing.stays(&entry, &mut found) {
+                return Ok(false);
+            }
+        }
+        let BuildReport { mut dropped, mut unreadable, elsewhere, .. } = found;
+        dropped.sort_by(|a, b| a.id.cmp(&b.id));
+        unreadable.sort();
+        (self.n_shapes, self.unchanged) = (index.len(), files.len());
+        (self.dropped, self.unreadable, self.elsewhere) = (dropped, unreadable, elsewhere);
+        Ok(true)
     }
 }

@@ -1,19 +1,17 @@
 //! What building an index did.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use base::Exceeded;
 use collection::{LabelOrigin, Skipped, UnusedLabel, count_skipped, n_classes};
-use index::{Entry, Index, IndexError};
+use index::Entry;
 use mesh::{Fault, MeshError};
 use serde::{Serialize, Serializer};
 
-use super::missing::Missing;
 use crate::error::{Error, Remedy};
 use crate::shape_index::place::mesh_path;
-use crate::shape_index::record::same_source;
-use crate::shape_index::source::{Hashed, Listed, Listing};
+use crate::shape_index::source::{Listed, Listing};
 
 /// A mesh that could not be described.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -158,36 +156,5 @@ impl BuildReport {
             let path = mesh_path(path, &entry.path);
             self.dropped.push(Dropped { id: entry.id.clone(), path, dropped_area_share });
         }
-    }
-
-    /// Completes the report if an index holds just these files, and nothing that has to be removed. Returns whether it does.
-    pub(super) fn is_current(
-        &mut self,
-        index: &Index,
-        files: &[Hashed],
-        missing: &Missing<'_>,
-    ) -> Result<bool, IndexError> {
-        let entries = index.entries()?.into_iter().map(|entry| (entry.id.clone(), entry));
-        let mut others: HashMap<String, Entry> = entries.collect();
-        let mut found = Self::default();
-        for (listed, hash) in files {
-            match (others.remove(&listed.file.name), hash) {
-                (Some(entry), Ok(hash)) if entry.content == *hash && same_source(&entry, listed) => {
-                    found.note_dropped(&index.path, &entry);
-                }
-                _ => return Ok(false),
-            }
-        }
-        for entry in others.into_values() {
-            if !missing.stays(&entry, &mut found) {
-                return Ok(false);
-            }
-        }
-        let BuildReport { mut dropped, mut unreadable, elsewhere, .. } = found;
-        dropped.sort_by(|a, b| a.id.cmp(&b.id));
-        unreadable.sort();
-        (self.n_shapes, self.unchanged) = (index.len(), files.len());
-        (self.dropped, self.unreadable, self.elsewhere) = (dropped, unreadable, elsewhere);
-        Ok(true)
     }
 }
