@@ -79,11 +79,9 @@ struct Proved<'a> {
     exact: Option<(Side, Merit)>,
 }
 
-impl Proved<'_> {
-    /// How far the surfaces are apart, in mesh units; 0 for what was not aligned.
-    fn gap(told: &Relation) -> f64 {
-        told.evidence.surface_gap.map_or(0.0, |gap| gap.rms)
-    }
+/// How far aligned surfaces are apart, root mean square, relative to the size; 0 for what was not aligned.
+fn gap(told: &Relation) -> f64 {
+    told.evidence.surface_gap.map_or(0.0, |gap| gap.rms)
 }
 
 /// The shapes of a cluster, named by their numbers, until each is in a group.
@@ -120,12 +118,11 @@ impl<'a> Cluster<'a> {
             let shape = &shapes[number];
             let told = related(kept, shape, by, options);
             let was_compared = told.is_some();
-            let told = told.filter(|told| options.accept(told));
-            let exact = |told: &Relation| kept.meshes(shape).and_then(|meshes| told.more_exact(meshes));
-            Ok((
-                was_compared,
-                told.map(|told| Proved { number, shape, exact: exact(&told), told }).ok_or(number),
-            ))
+            let Some(told) = told.filter(|told| options.accept(told)) else {
+                return Ok((was_compared, Err(number)));
+            };
+            let exact = kept.meshes(shape).and_then(|meshes| told.more_exact(meshes));
+            Ok((was_compared, Ok(Proved { number, shape, told, exact })))
         };
         let others: Vec<usize> = self.left.iter().copied().filter(|i| *i != keeper).collect();
         let found = others.par_iter().map(prove).collect::<Result<Vec<_>, Error>>()?;
@@ -160,14 +157,14 @@ impl<'a> Cluster<'a> {
     fn leave_to_others(&self, same: &mut Vec<Proved<'_>>, rest: &[usize]) -> Result<(), Error> {
         let (options, budget) = (self.options, self.observer.budget());
         let fits_better = |Proved { shape, told, .. }: &Proved<'_>| {
-            if !told.kind.is_one_surface() || Proved::gap(told) == 0.0 {
+            if !told.kind.is_one_surface() || gap(told) == 0.0 {
                 return Ok(false);
             }
             for &i in rest {
                 budget.check()?;
                 let found = related(&self.shapes[i], shape, Relation::by_surfaces, options);
                 let found = found.filter(|found| found.kind.is_one_surface() && options.accept(found));
-                if found.is_some_and(|found| Proved::gap(&found) < Proved::gap(told)) {
+                if found.is_some_and(|found| gap(&found) < gap(told)) {
                     return Ok(true);
                 }
             }
