@@ -59,7 +59,7 @@ pub(in crate::shape_index) fn fill(
         let stored = scope.spawn(|| store(writer, receive, observer));
         // Sending fails only if the writer has failed, and then nothing more is described.
         let n_equal = side_by_side(equal, |places| {
-            let (mut known, mut n_equal) = (None, 0);
+            let (mut known, mut n_equal, has_copies) = (None, 0, places.len() > 1);
             for place in places {
                 let (listed, content) = &wanted[place];
                 n_equal += usize::from(known.is_some());
@@ -67,7 +67,7 @@ pub(in crate::shape_index) fn fill(
                     Some(shape) => Ok(shape),
                     None => describe_file(&listed.file.path, options, limits, budget.clone()),
                 };
-                known = described.as_ref().ok().cloned();
+                known = described.as_ref().ok().filter(|_| has_copies).cloned();
                 let described = described.map(|shape| {
                     let entry = Entry { content: *content, ..shape.entry };
                     Shape { entry: entry_of(listed, entry), ..shape }
